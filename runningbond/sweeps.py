@@ -3,13 +3,14 @@
 from collections.abc import Iterable, Mapping
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from .campaigns import ctrl_c_passed_on, run_campaign
 from .campaigns.fingerprint import fingerprint
 from .models import TOLERANCE, Model, find_model
+from .models.far import check_goes_far, going_far
 from .results import make_folder
 from .scene import Scene, SceneError
 from .scene.ranges import path_of
@@ -32,6 +33,8 @@ def sweep(
     model: str | Model,
     *,
     tolerance: float = TOLERANCE,
+    displacements: Literal["small", "finite"] = "small",
+    distance: float | None = None,
     folder: str | Path | None = None,
     jobs: int = -1,
 ) -> Table:
@@ -47,6 +50,8 @@ def sweep(
         Name of a model, or a `Model` of one's own.
     tolerance
         Relative width of the brackets asked for.
+    displacements, distance
+        Whether the model follows walls through finite displacements, and how far live loads push them there [m].
     folder
         Where outcomes are kept; a sweep with the same folder computes only what is not there. None keeps nothing.
     jobs
@@ -61,9 +66,10 @@ def sweep(
     Raises
     ------
     SceneError
-        No combination describes a wall, for example because a key is misspelt.
+        For displacements that the model does not know, and where no combination describes a wall, for example because
+        a key is misspelt.
     """
-    model = find_model(model)
+    model = going_far(find_model(model), displacements, distance)
     check_wall(wall)
     if not isinstance(changes, Mapping):
         remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
@@ -89,6 +95,12 @@ def sweep(
             scenes[names[-1]] = scene
     if refusals and not scenes:
         raise next(iter(refusals.values()))
+    for name, scene in list(scenes.items()):
+        try:
+            check_goes_far(model, scene, displacements, distance)
+        except SceneError as refusal:
+            refusals[name, model.name] = refusal
+            del scenes[name]
     kept_in = None if folder is None else path_of("folder", folder)
     if kept_in is not None:
         make_folder(kept_in)

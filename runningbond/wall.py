@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from os.path import relpath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -288,6 +288,8 @@ class Wall:
         *,
         scatter: str = "bits",
         tolerance: float = 0.01,
+        displacements: Literal["small", "finite"] = "small",
+        distance: float | None = None,
         folder: str | Path | None = None,
         jobs: int = -1,
     ) -> "Draws":
@@ -302,6 +304,8 @@ class Wall:
         scatter
             ``"bits"``, the last ones of densities and frictions; or ``"size=0.01,friction=0.05"``, or one of them: the
             blocks' sizes within a relative tolerance, each joint's friction by the standard deviation of its logarithm.
+        displacements, distance
+            Whether the model follows walls through finite displacements, and how far live loads push them there [m].
         folder
             Where outcomes are kept and found again; None keeps nothing.
         jobs
@@ -315,8 +319,11 @@ class Wall:
         from .campaigns import ctrl_c_passed_on
         from .draws import Sampling
         from .models import find_model
+        from .models.far import check_goes_far, going_far
 
-        sampling = Sampling(self.scene, find_model(model), number, scatter)
+        chosen = going_far(find_model(model), displacements, distance)
+        check_goes_far(chosen, self.scene, displacements, distance)
+        sampling = Sampling(self.scene, chosen, number, scatter)
         with ctrl_c_passed_on():
             return sampling.run(tolerance, None if folder is None else path_of("folder", folder), jobs)
 

@@ -4,8 +4,6 @@ import json as to_json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -17,6 +15,7 @@ from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import find_scene
 from runningbond.draws import Sampling
 from runningbond.models import MODELS, TOLERANCE, Model, Progress, Recorder, check_tolerance, find_model, run_model
+from runningbond.models.far import check_goes_far, going_far
 from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, save_outcome, write_atomically
@@ -46,6 +45,9 @@ from .terminal import (
 
 OPTIONS = {"number": "--draws", "scatter": "--scatter"}
 """What draws are asked for with on the command line, by their names in Python."""
+
+FLAG = "--"
+"""What stands before the names of options."""
 
 
 def run(
@@ -86,14 +88,13 @@ def run(
     jobs
         Number of processes for draws; -1, the default, is one a core.
     """
-    chosen = _through(find_model(model, "--model"), displacements, distance)
+    chosen = going_far(find_model(model, "--model"), displacements, distance, FLAG)
     check_tolerance(tolerance, "--tolerance")
     for option, value in (("--scatter", scatter), ("--jobs", jobs)):
         if draws is None and value is not None:
             raise SceneError(option, "goes with --draws alone", value)
     wall = read_scene(find_scene(scene))
-    if displacements == "finite":
-        _check_far(chosen, wall, distance)
+    check_goes_far(chosen, wall, displacements, distance, FLAG)
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     chosen.check(wall)
@@ -116,32 +117,6 @@ def run(
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
-
-
-def _through(model: Model, displacements: str, distance: float | None) -> Model:
-    """The model, which follows walls through finite displacements, by a distance, if these are asked for."""
-    if displacements == "small":
-        if distance is not None:
-            raise SceneError("--distance", "goes with --displacements finite alone", distance)
-        return model
-    if "displacements" not in model.parameters:
-        able = " and ".join(name for name, each in MODELS.items() if "displacements" in each.parameters)
-        raise SceneError(
-            "--displacements", f'must be "small" for {model.name}; {able} follow finite ones', displacements
-        )
-    far = partial(model.solve, displacements=displacements, distance=distance)
-    return replace(model, solve=far, is_finite=True)
-
-
-def _check_far(model: Model, wall: Scene, distance: float | None) -> None:
-    """Refuse finite displacements of a wall that cannot be followed through them, before anything is run."""
-    from runningbond.dynamics.rig import check_finite, is_finite
-
-    try:
-        is_finite("finite", model.name, wall, distance)
-    except SceneError as error:
-        raise SceneError(f"--{error.key.split()[-1]}", error.remedy, error.value) from None
-    check_finite(wall)
 
 
 def _progress(model: Model, wall: Scene) -> Progress | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -30,6 +30,7 @@ from runningbond.scene.segments import find_joints
 from ..walls import content, courses, panel, write_toml
 
 STIFF = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9}
+TALL = {"length": 0.06, "height": 0.24, "block_width": 0.06, "block_height": 0.24, "thickness": 0.12}
 ARCH = str(Path(__file__).parents[2] / "examples" / "walls" / "arch_with_tie.toml")
 
 
@@ -333,6 +334,33 @@ def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: py
     assert [x.multiplier for x in apart.outcomes] == [x.multiplier for x in three.outcomes]
     wall.draws("dem-static", 3, scatter="friction=0.1", folder=tmp_path / "kept", jobs=1)
     assert len(computed) == 7  # the first is the same wall
+
+
+def test_draws_are_pushed_far_in_python_as_on_the_command_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same answers, of which each way has its own: λ of a block that topples, b / h, as it is."""
+    path, far = tmp_path / "block.toml", {"displacements": "finite", "distance": 0.004}
+    wall = rb.Wall.from_dict(content(wall=TALL, joint__friction=1.4, **STIFF))
+    wall.to_toml(path)
+    line = ["run", str(path), "--model", "dem-dynamic", "--draws", "2", "--json", "--jobs", "1"]
+    assert command([*line, *(word for key, value in far.items() for word in (f"--{key}", str(value)))]) == 0
+    said = json.loads(capsys.readouterr().out)["draws"]
+    draws = wall.draws("dem-dynamic", 2, folder=tmp_path / "kept", jobs=1, **cast(Any, far))
+    assert draws.lowest == said["lowest"]
+    assert [each.curve[-1, 0] for each in draws.outcomes] == pytest.approx([0.004] * 2, rel=0.01)
+    for way, reached in (({**far, "distance": 0.002}, 0.002), ({}, None), (far, 0.004)):
+        outcome = wall.draws("dem-dynamic", 2, folder=tmp_path / "kept", jobs=1, **cast(Any, way)).outcomes[1]
+        assert ("finite" in outcome.message) == (reached is not None)
+        assert reached is None or outcome.curve[-1, 0] == pytest.approx(reached, rel=0.01)
+
+
+def test_walls_that_are_not_pushed_far_have_no_draws_there() -> None:
+    """They are refused before any draw is run."""
+    live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}
+    wall = rb.Wall.from_dict(content(wall=TALL, **STIFF, load__live=live))
+    with pytest.raises(SceneError, match="^distance = 0.1: goes with finite displacements of a wall that its live"):
+        wall.draws("dem-dynamic", 2, displacements="finite", distance=0.1)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

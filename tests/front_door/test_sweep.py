@@ -4,7 +4,7 @@ import runpy
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ import runningbond as rb
 from runningbond.campaigns import tasks
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.models import run_model
-from runningbond.results import Outcome
+from runningbond.results import Outcome, load_outcome
 from runningbond.scene import Action, Array, Forces, Indices, Scene, SceneError
 
 WALL = rb.Wall.courses(
@@ -194,3 +194,68 @@ def test_a_folder_that_is_a_file_is_refused_before_anything_is_computed(tmp_path
     (tmp_path / "kept").write_text("")
     with pytest.raises(FileExistsError, match="is not a folder; name one.*kept"):
         rb.sweep(WALL, {"joint.friction": [0.2, 0.3]}, "limit", folder=tmp_path / "kept", jobs=1)
+
+
+# --- finite displacements ---------------------------------------------------------------------------------------
+
+BLOCK = rb.Wall.running_bond(
+    length=0.06,
+    height=0.24,
+    block_width=0.06,
+    block_height=0.24,
+    thickness=0.12,
+    density=1800.0,
+    friction=1.4,
+    normal_stiffness=1e10,
+    shear_stiffness=4e9,
+)
+
+
+def test_a_sweep_pushes_walls_as_far_as_it_is_asked_to_and_keeps_each_way_apart(tmp_path: Path) -> None:
+    """λ = b / h of a block that topples. Of small displacements and of two distances there are three answers."""
+    said, far = [], {"displacements": "finite", "distance": 0.01}
+    for way in ({}, far, {**far, "distance": 0.004}, far):
+        table = rb.sweep(
+            BLOCK, {"wall.thickness": [0.12, 0.2]}, "dem-dynamic", folder=tmp_path, jobs=1, **cast(Any, way)
+        )
+        assert np.asarray(table["multiplier"]) == pytest.approx([0.25, 0.25], rel=0.01)
+        said.append((list(table["message"]), list(table["seconds"])))
+    assert "small displacements" in said[0][0][0]
+    assert "finite displacements" in said[1][0][0]
+    assert said[3] == said[1]  # the same answers, found again
+    kept = [load_outcome(folder)[0] for folder in sorted(tmp_path.glob("*/dem-dynamic"))]
+    assert len(kept) == 6
+    far_ones = sorted(float(each.curve[-1, 0]) for each in kept if "finite" in each.message)
+    assert far_ones == pytest.approx([0.004, 0.004, 0.01, 0.01], rel=0.02)
+
+
+def test_walls_that_are_not_pushed_are_rows_of_a_sweep_by_a_distance() -> None:
+    """One whose ground moves, and one whose support settles, which go as far as they do."""
+    pulse = {"pulse": {"kind": "sine", "amplitude": 0.4, "period": 0.6}, "quantity": "g"}
+    sinks = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -0.01]}
+    loads = [{"live": None, "history": pulse}, {"live": sinks}]
+    table = rb.sweep(BLOCK, {"load": loads}, "dem-dynamic", displacements="finite", distance=0.1, jobs=1)
+    assert list(table["status"]) == ["refused", "refused"]
+    assert "displacements = 'finite': is not taken where the ground moves" in table["message"][0]
+    assert "distance = 0.1: goes with finite displacements of a wall that its live load pushes" in table["message"][1]
+
+
+@pytest.mark.parametrize(
+    ("model", "way", "said"),
+    [
+        ("limit", {"displacements": "finite"}, '^displacements = .*: must be "small" for limit; dem-dynamic and fem'),
+        ("fem", {"displacements": "finit"}, "^displacements = 'finit': must be one of .*; did you mean \"finite\""),
+        ("fem", {"distance": 0.1}, '^distance = 0.1: goes with displacements="finite" alone'),
+        ("fem", {"displacements": "finite", "distance": 0.0}, "^distance = 0.0: must be a number above 0"),
+        ("fem", {"displacements": "finite", "distance": "far"}, "^distance = 'far': must be a number above 0"),
+    ],
+)
+def test_displacements_that_a_model_does_not_follow_are_refused_at_once(
+    model: str, way: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    """By sweeps and by draws, with the same words; nothing is kept."""
+    with pytest.raises(rb.SceneError, match=said):
+        rb.sweep(BLOCK, {"wall.thickness": [0.12]}, model, folder=tmp_path / "kept", **way)
+    with pytest.raises(rb.SceneError, match=said):
+        BLOCK.draws(model, 2, folder=tmp_path / "kept", **way)
+    assert not (tmp_path / "kept").exists()
