@@ -152,7 +152,9 @@ def _carried(scene: Scene, drawn: Scene) -> Scene:
         there = moved(forces.block, forces.at)
         if not forces.moment.any() and np.array_equal(there, forces.at):
             return load
-        return GivenForces(replace(forces, at=there))
+        block, at, direction = load.control(scene)
+        place = moved(block, np.tile(at, (len(block), 1))).mean(axis=0)
+        return GivenForces(replace(forces, at=there), (block, place, direction))
 
     live, dead = (tuple(map(on_blocks, loads)) for loads in (scene.load.live, scene.load.dead))
     return replace(

@@ -24,7 +24,7 @@ SCENE_KEY = "scene"
 def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
     """Arrays that say everything about a scene, by names that start with ``scene``.
 
-    Of a load of a user's own they hold its forces, and of a law its name.
+    Of a load of a user's own they hold its forces and where it is read, and of a law its name.
     """
     arrays: dict[str, NDArray[Any]] = {}
 
@@ -32,7 +32,7 @@ def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
         if isinstance(value, Law):
             return {"named": value.name}
         if isinstance(value, Action) and type(value).__name__ not in DATACLASSES:
-            value = GivenForces(value.forces(scene))
+            value = GivenForces(value.forces(scene), value.control(scene))
         if isinstance(value, tuple):
             return [encoded(inner, f"{name}.{k}") for k, inner in enumerate(value)]
         if is_dataclass(value):

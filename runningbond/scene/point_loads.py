@@ -239,6 +239,14 @@ class LineLoad(Action):
         direction = unit_vector(np.array(self.force))
         return tuple(Arrow(direction, tip, np.array([one])) for tip, one in zip(tips, of, strict=True))
 
+    def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
+        """Its middle, on the block that bears it there, or on both where two meet."""
+        block, share = self.parts(scene)
+        reach = scene.blocks.tolerance / self._length
+        there = (share[:, 0] <= 0.5 + reach) & (share[:, 1] >= 0.5 - reach)
+        middle = np.add(self.start, self.end) / 2
+        return np.unique(block[there]), np.asarray(middle), unit_vector(np.array(self.force))
+
 
 @dataclass(frozen=True)
 class Moment(Action):
@@ -287,7 +295,12 @@ class GivenForces(Action):
     """Forces as they are: what a record keeps of a load of a user's own, and a drawn wall of loads at points."""
 
     given: Forces
+    place: tuple[Indices, Array, Array] | None = None  # where displacements are read, as `control` has it
 
     def forces(self, scene: "Scene") -> Forces:
         """These forces."""
         return self.given
+
+    def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
+        """Where the load that they were of is read."""
+        return self.place or super().control(scene)

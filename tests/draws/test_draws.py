@@ -113,6 +113,30 @@ def test_loads_stay_on_their_blocks_whatever_the_sizes(load: dict[str, Any]) -> 
         assert (forces.at < high[forces.block] + 1e-12).all()
 
 
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"kind": "point", "at": [0.6, 0.4], "force": [0.0, -1e4]},
+        {"kind": "line", "from": [0.5, 0.4], "to": [0.7, 0.4], "force": [0.0, -1e4]},
+        {"kind": "line", "from": [0.0, 0.8], "to": [0.4, 0.8], "force": [0.0, -1e4]},
+        {"kind": "moment", "at": [0.6, 0.38], "moment": 300.0},
+    ],
+)
+def test_displacements_of_draws_are_read_where_those_of_the_wall_are(load: dict[str, Any]) -> None:
+    """On the same blocks, in the same direction, as far from their lower left corners but for the change of sizes."""
+    scene = courses([[1, 1], [1, 1], [1], [1]], 0.4, 0.2, load__live=load, **STIFF)
+    block, at, direction = scene.control_point
+    low, high = scene.blocks.boxes
+    for k in range(1, 8):
+        drawn = Scatter(size=0.05).draw(scene, k)
+        there, place, way = drawn.control_point
+        assert np.array_equal(there, block)
+        assert np.array_equal(way, direction)
+        (x0, y0), (x1, y1) = drawn.blocks.boxes[0][block[0]], drawn.blocks.boxes[1][block[0]]
+        share = (at - low[block[0]]) / (high - low)[block[0]]
+        assert place == pytest.approx([x0 + share[0] * (x1 - x0), y0 + share[1] * (y1 - y0)])
+
+
 def test_pins_and_bars_stay_on_their_blocks_whatever_the_sizes() -> None:
     """A wall held at the corners of its first course, and two of its blocks tied."""
     tie = {"from": [0.2, 0.3], "to": [0.6, 0.3], "area": 1e-4, "young": 2e11, "yield": 4e8}

@@ -96,6 +96,7 @@ def test_a_result_keeps_the_forces_of_a_load_of_ones_own(tmp_path: Path) -> None
     again = load_scene(tmp_path)
     assert np.array_equal(live_load(again), live_load(scene))
     assert np.array_equal(dead_load(again), dead_load(scene))
+    assert all(map(np.array_equal, again.control_point, scene.control_point))
 
 
 def test_live_loads_share_one_multiplier_and_dead_ones_have_none() -> None:
@@ -236,6 +237,18 @@ def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, f
     run, middle = (high - low) * on, (high + low) / 2 - scene.blocks.centroid[:, 0]
     expected = np.column_stack([20.0 * run, -100.0 * run, -100.0 * run * middle - 20.0 * run * 0.03])
     assert load == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize(("ends", "on"), [((0.0, 1.44), 1), ((0.12, 0.6), 2), ((0.3, 1.2), 1), ((1.2, 0.3), 1)])
+def test_displacements_under_a_line_load_are_read_at_its_middle(ends: tuple[float, float], on: int) -> None:
+    """On the block of the top course there, or the mean of the two that meet there."""
+    live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [30.0, -40.0]}
+    scene = panel(load__live=live)
+    block, at, direction = scene.control_point
+    assert at.tolist() == pytest.approx([sum(ends) / 2, 0.72])
+    assert direction.tolist() == pytest.approx([0.6, -0.8])
+    assert set(block) == set(scene.blocks.containing(at))
+    assert len(block) == on
 
 
 @pytest.mark.parametrize("angle", [80.0, 40.0, 10.0, 1.0])
