@@ -88,6 +88,7 @@ class Way:
     inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
     crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # of joints' ends there [m], closed for good
     gone: float = 0.0  # how far the blocks that go farthest have gone in each row of a push, in all [m]
+    elsewhere: tuple[Indices, Array, Array] | None = None  # where its displacements are, if the control point stays
     lasting: float = 0.0  # largest mean force over a whole row of a motion
     resolved: bool = True  # whether means over ever shorter parts of its way add next to nothing to the answer
 
@@ -125,6 +126,11 @@ class Lead:
         """What the answer of a way is."""
         share, reaction = "share of the dead load on the support", "largest reaction of the drive along its way"
         return share if self.settles else reaction
+
+    @property
+    def read_at(self) -> str:
+        """What is to be said of where displacements are read."""
+        return ""
 
     @property
     def settles(self) -> bool:

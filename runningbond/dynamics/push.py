@@ -4,12 +4,14 @@ The blocks that go farthest go as fast as one another from row to row, whichever
 where few of them fall as where all do. It begins slowly, in short rows, for most walls peak at once.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Indices, Scene
 
 from .lead import LITTLE, ROWS, SEEN, Lead, Way
 from .peaks import Peaks
@@ -42,6 +44,13 @@ WINDOWS = 4
 """Most windows of a row whose mean multipliers are looked at: all blocks are pushed, and the push shakes with them."""
 
 
+STAYS = 0.01
+"""Part of the way of the blocks that go farthest by which a point that counts as staying where it is goes at most."""
+
+ControlPoint: TypeAlias = tuple[Indices, Array, Array]
+"""Blocks ``(n,)``, point and direction ``(2,)`` of a displacement, as of `Scene.control_point`."""
+
+
 def finite_run(system: BlockSystem, scene: Scene) -> Run:
     """The bodies of a scene at finite displacements, damped as what leads them asks for.
 
@@ -59,6 +68,7 @@ class Push(Lead):
 
     distance: float = np.inf
     reach: float = np.inf  # how far the blocks that go farthest are expected to go [m]; the distance, if not known
+    elsewhere: ControlPoint | None = None  # where displacements are read in place of a control point that stays
 
     @property
     def answer(self) -> str:
@@ -90,13 +100,45 @@ class Push(Lead):
         return self._control(self.start.motion)
 
     def _control(self, motion: Array) -> float:
+        block, at, direction = self.elsewhere or self.scene.control_point
+        return float(((self._places(block, np.tile(at, (len(block), 1)), motion) - at) @ direction).mean())
+
+    def _places(self, block: Indices, at: Array, motion: Array) -> Array:
+        """Where points of blocks ``(n,)``, ``(n, 2)`` [m], are in a motion ``(nd,)``, ``(n, 2)`` [m]."""
         contacts = self.run.system.contacts
         if contacts is None:
             raise TypeError("walls are pushed at finite displacements")
-        block, at, direction = self.scene.control_point
-        rigid = self.run.system.motion_of_blocks(motion).ravel()
-        places = contacts.outline.points(block, np.tile(at, (len(block), 1)), rigid)
-        return float(((places - at) @ direction).mean())
+        return contacts.outline.points(block, at, self.run.system.motion_of_blocks(motion).ravel())
+
+    @property
+    def read_at(self) -> str:
+        """Where displacements are read, if the control point stays where it is."""
+        if self.elsewhere is None:
+            return ""
+        where = self.scene.blocks.place(self.elsewhere[1])
+        return f"displacements are read at {where}, for the control point of the first live load stays where it is"
+
+    def _read_where_it_moves(self, way: Way, motions: list[Array]) -> None:
+        """Read the displacements of a way anew, from the motions at its rows, if its control point stays."""
+        if way.verdict == "stable" or np.abs(way.curve[:, 0]).max() > STAYS * way.gone:
+            return
+        for place in self._others(motions[-1]):
+            lead = replace(self, elsewhere=place)
+            moved = [lead._control(motion) - lead._at_rest for motion in motions]
+            if np.abs(moved).max() > STAYS * way.gone:
+                way.elsewhere = place
+                way.rows[:] = [row._replace(moved=at) for row, at in zip(way.rows, moved, strict=True)]
+                return
+
+    def _others(self, motion: Array) -> Iterator[ControlPoint]:
+        """Control points of all live loads, then the corners that go farthest along each in a motion ``(nd,)``."""
+        points = [load.control(self.scene) for load in self.scene.load.live]
+        yield from points
+        owner, corner = self.scene.blocks.owner, self.scene.blocks.vertices
+        gone = self._places(owner, corner, motion) - self._places(owner, corner, self.start.motion)
+        for _, _, direction in points:
+            farthest = int(np.abs(gone @ direction).argmax())
+            yield owner[[farthest]], corner[farthest], direction
 
     @cached_property
     def _load(self) -> float:
@@ -111,11 +153,12 @@ class Push(Lead):
 
         Where they went on without either end in sight, as far as the control point needs them to.
         """
+        lead = replace(self, elsewhere=way.elsewhere or self.elsewhere)
         if way.verdict == "collapse" and way.gone:
-            return replace(self, reach=self.longest * min(1.0, max(LESS, BEYOND * way.gone / self.longest)))
+            return replace(lead, reach=self.longest * min(1.0, max(LESS, BEYOND * way.gone / self.longest)))
         if way.verdict == "undecided":
             came = abs(way.rows[-1].moved) / self.distance
-            return replace(self, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
+            return replace(lead, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
         return self
 
     def kept(self, ways: list[Way]) -> Way:
@@ -180,6 +223,7 @@ class Push(Lead):
         else:
             way.verdict = "undecided"
         self.conclude(way, peaks, seen)
+        self._read_where_it_moves(way, [motion for motion, _ in seen])
         return state
 
 

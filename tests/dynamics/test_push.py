@@ -21,7 +21,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 from tests.dynamics.test_led import block, brackets
 from tests.fem_interface.walls import MORTAR
-from tests.walls import panel
+from tests.walls import courses, panel
 
 WIDTH, HEIGHT = 0.06, 0.24
 TOE = np.array([WIDTH, 0.0])
@@ -230,6 +230,34 @@ def test_a_point_that_other_loads_push_back_tells_as_much() -> None:
     assert apart < 1
     short = dem_dynamic(slender([back, {"kind": "lateral"}]), displacements="finite", distance=0.01)
     assert short.curve[-1, 0] == pytest.approx(-0.01, rel=0.02)
+
+
+BESIDE: dict[str, Any] = {"kind": "point", "at": [6 * WIDTH, HEIGHT], "force": [0.01, 0]}
+AT_CORNER: dict[str, Any] = {"kind": "point", "at": [0.0, HEIGHT], "force": [1, 0]}
+
+
+def beside_a_stout_one(live: Any, **changes: Any) -> Scene:
+    """The slender block, and one three times as wide apart from it, which stays."""
+    rows: list[list[float]] = [[1, -2, 3]]
+    return courses(rows, WIDTH, HEIGHT, joint__friction=1.4, joint__mortar=MORTAR, load__live=live, **changes)
+
+
+@pytest.mark.parametrize("live", [[BESIDE, AT_CORNER], {"kind": "lateral"}], ids=["first load", "lateral"])
+def test_displacements_are_read_where_a_wall_moves(live: Any) -> None:
+    """What stays beside it has no curve: the corner of the block that topples has, tan(α − θ) and as a force there."""
+    outcome, corner = dem_dynamic(beside_a_stout_one(live), 0.005, displacements="finite"), np.array([0.0, HEIGHT])
+    weight, middle = 9.81 * slender({"kind": "lateral"}).mass[0], np.array([WIDTH / 2, HEIGHT / 2])
+    turned = angles(outcome.curve, corner, np.array([1.0, 0.0]))
+    arms = [(about_its_toe(middle, angle), about_its_toe(corner, angle)) for angle in turned]
+    at_corner = np.array([-weight * toe[0] / there[1] for toe, there in arms])
+    follows(outcome, at_corner if isinstance(live, list) else np.tan(math.atan(WIDTH / HEIGHT) - turned))
+    assert "displacements are read at (0, 0.24), for the control point of the first live load stays" in outcome.message
+    assert f"falls to nothing at {WIDTH:.4g} m" in outcome.message
+
+
+def test_a_distance_is_that_of_where_a_wall_moves() -> None:
+    outcome = dem_dynamic(beside_a_stout_one({"kind": "lateral"}), displacements="finite", distance=0.01)
+    assert outcome.curve[-1, 0] == pytest.approx(0.01, rel=0.02)
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
