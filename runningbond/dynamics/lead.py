@@ -235,6 +235,10 @@ class Lead:
         """A curve ``(n, 2)`` with its displacement counted towards where walls are to fail."""
         return curve
 
+    def remedy(self, curve: Array) -> str:
+        """What to do where speeds differ on the answer of a curve ``(n, 2)``."""
+        return ""
+
     def fall(self, curve: Array) -> str:
         """How a wall has fallen at the end of its curve ``(n, 2)``."""
         if self.settles:

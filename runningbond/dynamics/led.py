@@ -114,8 +114,9 @@ def _push(lead: Lead, distance: float | None, most: float) -> Push:
     scene, system = lead.scene, lead.run.system
     low, high = scene.blocks.extent(scene.wall)
     load = system.measure(system.live) or 1.0
-    given = (lead.scene, lead.run, lead.start, lead.criteria, lead.observe, lead.points)
-    return Push(*given, most / load, distance or float((high - low).min()))
+    given, side = (scene, lead.run, lead.start, lead.criteria, lead.observe, lead.points), float((high - low).min())
+    # Few walls go farther than their smaller side before they fall: those that do are pushed farther the next time.
+    return Push(*given, most / load, distance or side, min(distance or side, side))
 
 
 def _rate(scene: Scene) -> float | None:
@@ -233,6 +234,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
         bounds = (None, most) if falls else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if _spread(lead, ways) > tolerance and not _rate(lead.scene):
-        return replace(outcome, message=f"no answer: another speed changes it by more than the tolerance; {what}")
+        why = joined("another speed changes it by more than the tolerance", lead.remedy(outcome.curve))
+        return replace(outcome, message=f"no answer: {why}; {what}")
     fall = f"; {lead.fall(outcome.curve)}" if fell else ""
     return replace(outcome, status="collapse", multiplier=way.answer, message=what + fall)

@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from runningbond.results.outcome import two_digits
 from runningbond.scene import Array, Indices, Scene
 
 from .lead import LITTLE, ROWS, SEEN, Lead, Way
@@ -43,6 +44,9 @@ HALF = 0.5
 WINDOWS = 4
 """Most windows of a row whose mean multipliers are looked at: all blocks are pushed, and the push shakes with them."""
 
+
+EARLY = 0.01
+"""Part of a way before which a peak is told by the few short rows in which a push gathers speed."""
 
 STAYS = 0.01
 """Part of the way of the blocks that go farthest by which a point that counts as staying where it is goes at most."""
@@ -181,6 +185,13 @@ class Push(Lead):
     def failing(self, curve: Array) -> int:
         """The row of a curve ``(n, 2)`` in which the wall is seen to fail: just past the peak, while it is as built."""
         return min(len(curve) - 1, int(curve[:, 1].argmax()) + SEEN)
+
+    def remedy(self, curve: Array) -> str:
+        """Ask for a shorter way of a wall whose peak is told by a few rows at its beginning."""
+        peak = abs(curve[curve[:, 1].argmax(), 0])
+        if peak > EARLY * np.abs(curve[:, 0]).max():
+            return ""
+        return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
 
     def fall(self, curve: Array) -> str:
         """How a wall has fallen at the end of its curve ``(n, 2)``."""

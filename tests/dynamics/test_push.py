@@ -145,6 +145,23 @@ def test_a_wall_that_falls_as_the_push_gathers_speed_is_followed_no_further() ->
     assert (outcome.curve[:-1, 1] >= 0).all()
 
 
+def test_a_distance_that_no_wall_goes_is_no_other_push() -> None:
+    """It is not begun so fast that its peak is missed: a hundred metres were, whose bracket did not have tan α."""
+    near, far = (dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=d) for d in (None, 100.0))
+    assert np.array_equal(near.curve, far.curve)
+    brackets(far, WIDTH / HEIGHT, 0.01)
+
+
+@pytest.mark.parametrize(("peak", "said"), [(8.9e-5, "the peak is at 8.9e-05 m: a shorter distance"), (0.01, "")])
+def test_a_peak_at_the_very_beginning_asks_for_a_shorter_way(peak: float, said: str) -> None:
+    nothing: Any = None
+    lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
+    for side in (1.0, -1.0):
+        curve = np.array([[0.0, 0.0], [side * peak, 0.4], [side * 0.1, 0.3], [side * 0.2, 0.0]])
+        assert lead.remedy(curve).startswith(said)
+        assert bool(lead.remedy(curve)) == bool(said)
+
+
 def test_a_wall_that_locks_is_not_pushed_through_the_ground() -> None:
     outcome = dem_dynamic(block(load__live={"kind": "body", "acceleration": [0, -9.81]}), displacements="finite")
     assert outcome.status == "unbounded", outcome.message
