@@ -235,6 +235,10 @@ class Lead:
         """A curve ``(n, 2)`` with its displacement counted towards where walls are to fail."""
         return curve
 
+    def before(self, curve: Array) -> str:
+        """What is to be said of a curve ``(n, 2)`` on its way to the answer."""
+        return ""
+
     def remedy(self, curve: Array) -> str:
         """What to do where speeds differ on the answer of a curve ``(n, 2)``."""
         return ""

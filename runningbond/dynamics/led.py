@@ -215,7 +215,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     what += f"; {'small' if small else 'finite'} displacements"
     if lead.settles and not small and not lead.scene.joint.inset:
         what += ", sharp corners: with a joint.inset they do not slip past each other"
-    what = joined(what, lead.read_at)
+    what = joined(what, lead.before(outcome.curve), lead.read_at)
     at = f"{abs(outcome.curve[-1, 0]) if lead.settles else np.abs(outcome.curve[:, 0]).max():.4g} m"
     if way.verdict == "undecided" or len(ways) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")

@@ -11,10 +11,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from runningbond.results.outcome import two_digits
+from runningbond.results.outcome import number, two_digits
 from runningbond.scene import Array, Indices, Scene
 
-from .lead import LITTLE, ROWS, SEEN, Lead, Way
+from .lead import LITTLE, LOSS, ROWS, SEEN, Lead, Way
 from .peaks import Peaks
 from .run import CALMING, MOVING, Run
 from .state import State
@@ -185,6 +185,17 @@ class Push(Lead):
     def failing(self, curve: Array) -> int:
         """The row of a curve ``(n, 2)`` in which the wall is seen to fail: just past the peak, while it is as built."""
         return min(len(curve) - 1, int(curve[:, 1].argmax()) + SEEN)
+
+    def before(self, curve: Array) -> str:
+        """A first peak, if the multiplier fell far from it before it rose to its largest: a wall may come to lean."""
+        moved, load = curve[: curve[:, 1].argmax()].T
+        fallen = np.flatnonzero(load < LOSS * np.maximum.accumulate(load))
+        first = int(load[: fallen[0]].argmax()) if len(fallen) else 0
+        if not len(fallen) or load[first] < self.least:
+            return ""
+        low = number(float(load[fallen[0] :].min()))
+        peak = f"{number(float(load[first]))} at {two_digits(abs(moved[first]))} m"
+        return f"the multiplier had fallen from {peak} to {low} before"
 
     def remedy(self, curve: Array) -> str:
         """Ask for a shorter way of a wall whose peak is told by a few rows at its beginning."""

@@ -224,10 +224,10 @@ def run_model(
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     if not isinstance(outcome, Outcome):
         raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
-    finite = parameters.get("displacements") == "finite"
+    finite = model.is_finite or parameters.get("displacements") == "finite"
     notes = [
         outcome.message,
-        _moves(model, scene, outcome, parameters.get("collapse")),
+        "" if finite else _moves(model, scene, outcome, parameters.get("collapse")),
         "" if finite else _led_far(model, scene, outcome),
         _keeps_strength(model, scene),
         _left_out(model, scene, finite),

@@ -162,6 +162,18 @@ def test_a_peak_at_the_very_beginning_asks_for_a_shorter_way(peak: float, said: 
         assert bool(lead.remedy(curve)) == bool(said)
 
 
+def test_a_wall_that_falls_onto_the_ground_tells_the_peak_before_it() -> None:
+    """A slab on a pier tips at W a / c, and bears far more once its corner stands on the ground."""
+    at_end = {"kind": "point", "at": [0.6, 0.2], "force": [0.0, -1.0]}
+    scene = courses([[1], [1.5]], 0.4, 0.1, joint__mortar=MORTAR, load__live=at_end)
+    outcome = dem_dynamic(scene, 0.2, displacements="finite")
+    assert outcome.curve[:, 1].max() > 400
+    peak = float(outcome.message.split("had fallen from ")[1].split()[0])
+    assert peak == pytest.approx(9.81 * scene.mass[1] * 0.1 / 0.2, rel=5e-3)
+    alone = dem_dynamic(scene, 0.02, displacements="finite", distance=0.02)
+    assert "had fallen" not in alone.message
+
+
 def test_a_wall_that_locks_is_not_pushed_through_the_ground() -> None:
     outcome = dem_dynamic(block(load__live={"kind": "body", "acceleration": [0, -9.81]}), displacements="finite")
     assert outcome.status == "unbounded", outcome.message

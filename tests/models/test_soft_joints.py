@@ -1,5 +1,7 @@
 """Joints that give much: models that follow a wall say so, and do not take a sway for a fall."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,8 @@ import runningbond as rb
 from dem.stiffness_update import resultant_wall
 from runningbond.compare import published_scene
 from runningbond.limit import elastic_displacement
-from runningbond.models import run_model
+from runningbond.models import find_model, run_model
+from runningbond.models.far import going_far
 from tests.at_length import at_length
 from tests.walls import courses, panel
 
@@ -109,3 +112,13 @@ def test_a_slender_pier_bears_as_much_on_soft_joints(stiffness: float) -> None:
     assert result.lower is not None
     assert bound is not None
     assert 0.99 * bound < result.lower <= bound
+
+
+def test_what_gives_at_finite_displacements_is_followed_and_not_beyond_them() -> None:
+    """A block on joints of 1 MPa/m sinks by 4 mm and leans as it is pushed: small displacements say that it is soft."""
+    joint = {"friction": 1.4, "normal_stiffness": 1e6, "shear_stiffness": 4e5}
+    scene = courses([[1]], 0.06, 0.24, joint=joint)
+    far: dict[str, Any] = {"displacements": "finite", "distance": 0.05}
+    assert "too soft" in run_model("dem-dynamic", scene, 0.05).message
+    assert "too soft" not in run_model("dem-dynamic", scene, 0.05, **far).message
+    assert "too soft" not in run_model(going_far(find_model("dem-dynamic"), **far), scene, 0.05).message
