@@ -123,10 +123,11 @@ class Push(Lead):
         return f"displacements are read at {where}, for the control point of the first live load stays where it is"
 
     def _read_where_it_moves(self, way: Way, motions: list[Array]) -> None:
-        """Read the displacements of a way anew, from the motions at its rows, if its control point stays."""
-        if way.verdict == "stable" or np.abs(way.curve[:, 0]).max() > STAYS * way.gone:
+        """Read the displacements of a way at the control point, or elsewhere if that stays: from its rows' motions."""
+        way.elsewhere = self.elsewhere
+        if way.verdict == "stable" and self.elsewhere is None:
             return
-        for place in self._others(motions[-1]):
+        for place in (None, *filter(None, [self.elsewhere]), *self._others(motions[-1])):
             lead = replace(self, elsewhere=place)
             moved = [lead._control(motion) - lead._at_rest for motion in motions]
             if np.abs(moved).max() > STAYS * way.gone:
@@ -157,13 +158,13 @@ class Push(Lead):
 
         Where they went on without either end in sight, as far as the control point needs them to.
         """
-        lead = replace(self, elsewhere=way.elsewhere or self.elsewhere)
+        lead = replace(self, elsewhere=way.elsewhere)
         if way.verdict == "collapse" and way.gone:
             return replace(lead, reach=self.longest * min(1.0, max(LESS, BEYOND * way.gone / self.longest)))
         if way.verdict == "undecided":
             came = abs(way.rows[-1].moved) / self.distance
             return replace(lead, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
-        return self
+        return lead
 
     def kept(self, ways: list[Way]) -> Way:
         """The last that was gone to its end, if one was: the others begin ever more slowly."""

@@ -1,7 +1,8 @@
 """Walls that live loads push far: blocks about their toes, walls from the load of limit analysis on, what ends them."""
 
 import math
-from typing import Any
+from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -282,6 +283,20 @@ def test_displacements_are_read_where_a_wall_moves(live: Any) -> None:
     follows(outcome, at_corner if isinstance(live, list) else np.tan(math.atan(WIDTH / HEIGHT) - turned))
     assert "displacements are read at (0, 0.24), for the control point of the first live load stays" in outcome.message
     assert f"falls to nothing at {WIDTH:.4g} m" in outcome.message
+
+
+def test_displacements_are_read_at_the_control_point_again_once_it_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a push that was far too fast has thrown blocks about, and left it where it was."""
+    after, heel = Push.after, (np.zeros(1, dtype=np.int64), np.zeros(2), np.array([0.0, 1.0]))
+
+    def astray(lead: Push, way: Way) -> Push:
+        return replace(cast(Push, after(lead, way)), elsewhere=heel)
+
+    monkeypatch.setattr(Push, "after", astray)
+    led = dem_dynamic(slender({"kind": "lateral"}), displacements="finite")
+    monkeypatch.undo()
+    alone = dem_dynamic(slender({"kind": "lateral"}), displacements="finite")
+    assert np.array_equal(led.curve, alone.curve)
 
 
 def test_a_distance_is_that_of_where_a_wall_moves() -> None:
