@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .scene import Scene, SceneError, read_description, scene_from_dict
+from .scene.errors import abbreviated
 from .scene.ranges import path_of, suggestion
 
 if TYPE_CHECKING:
@@ -241,7 +242,7 @@ class Wall:
         for name, value in tables.items():
             full_name = name.replace("__", ".")
             if "." in full_name:
-                raise SceneError(name, f'is within a table; give it as {{"{full_name}": {value!r}}}', value)
+                raise SceneError(name, f'is within a table; give it as {{"{full_name}": {abbreviated(value)}}}', value)
             _check_has_its_table(name, value)
         return Wall(_changed(self._description, [*nested_changes, tables]), self.folder)
 
@@ -418,7 +419,7 @@ def _check_has_its_table(name: str, value: object) -> None:
     from .scene.schema import is_key_of
 
     if table != "wall" or is_key_of(table, name):
-        raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {value!r}}}', value)
+        raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {abbreviated(value)}}}', value)
 
 
 def _as_in_a_file(value: Any) -> Any:
@@ -427,8 +428,9 @@ def _as_in_a_file(value: Any) -> Any:
         return {str(key): _as_in_a_file(inner) for key, inner in value.items() if inner is not None}
     if isinstance(value, (list, tuple)):
         return [_as_in_a_file(inner) for inner in value]
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
+    if hasattr(value, "__array__"):
+        array = np.asarray(value)  # one of objects holds whatever they are, polygons of unlike numbers of corners say
+        return [_as_in_a_file(inner) for inner in array] if array.dtype == object and array.ndim else array.tolist()
     return str(value) if isinstance(value, Path) else value
 
 

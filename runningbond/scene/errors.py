@@ -32,7 +32,7 @@ class SceneError(ValueError):
         self.key, self.remedy, self.value = key, remedy, value
 
     def __str__(self) -> str:
-        value = "" if self.value is None else f" = {_abbreviated(self.value)}"
+        value = "" if self.value is None else f" = {abbreviated(self.value)}"
         return f"{self.key}{value}: {' '.join(self.remedy.split())}"
 
 
@@ -66,7 +66,8 @@ def keys_of(table: str, default: str) -> Iterator[None]:
         raise SceneError(table + error.key.removeprefix(default), error.remedy, error.value) from None
 
 
-def _abbreviated(value: object) -> str:
+def abbreviated(value: object) -> str:
+    """A value as messages show it, in a line that does not grow with what is in it."""
     try:
         text = " ".join(repr(value).split())
     except ValueError:  # Python refuses to print integers of thousands of digits

@@ -131,9 +131,7 @@ def _sizes(scene: Scene) -> Iterator[str]:
     low, high = scene.blocks.extent(scene.masonry)
     longest = float(max(high - low))
     side = "length" if longest == (high - low)[0] else "height"
-    if scene.bond is None:
-        side = f"drawing: {side}"
-    yield from SIZE.doubts(f"wall.{side}", longest)
+    yield from SIZE.doubts(f"wall{': ' if scene.bond is None else '.'}{side}", longest)  # outlines have no such key
     middling = float(np.median(np.sqrt(scene.blocks.area[scene.masonry])))
     least, most = (share * middling for share in THICKNESS)
     if not least <= scene.thickness <= most:

@@ -232,9 +232,12 @@ def _value(tables: Any, path: str, asked: Schema, value: Any) -> Schema:
         return {"enum": words}
     if asked.get("kind") == "tables by name":
         return {"type": "object", "additionalProperties": _table(tables, _path(f"{path}.any"))}
+    pair: Schema = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+    outline: Schema = {"type": "array", "items": pair, "minItems": 3}
     fixed: dict[Any, Schema] = {
         "text": {"type": "string"},
-        "vector": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+        "vector": pair,
+        "outlines": {"type": "array", "items": outline, "minItems": 1},
     }
     return fixed.get(asked.get("kind")) or _like(tables, path, value)
 

@@ -132,5 +132,6 @@ def _overlap(blocks: Blocks, a: int, b: int, common: shapely.Geometry) -> str:
     part = max(shapely.get_parts(common), key=lambda shape: shape.area)
     depth = float(smaller_sides([part])[0])
     where = f"by {depth:.2g} m at {blocks.place(np.array(part.representative_point().coords[0]))}"
-    heal = "; wall.heal closes small overlaps of drawings" if depth < NEAR * np.sqrt(blocks.area.min()) else ""
+    is_small = depth < NEAR * np.sqrt(blocks.area.min())
+    heal = "; wall.heal closes small overlaps of drawings and outlines" if is_small else ""
     return f"{other} {where}; blocks may touch, not share an area{heal}"

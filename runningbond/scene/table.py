@@ -132,6 +132,7 @@ class Table:
 
     def outlines(self, key: str) -> list[list[tuple[float, float]]]:
         """A list of outlines, each a list of corners."""
+        self._ask(key, kind="outlines")
         value, key = self.required(key, OUTLINES), self.key(key)
         if not isinstance(value, list) or not value:
             raise SceneError(key, f"must be {OUTLINES}", value)

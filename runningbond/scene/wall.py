@@ -383,7 +383,7 @@ def build_scene(
     """
     one_of("support.kind", support, SUPPORT_KINDS)
     if grounds and support in ("corners", "pinned-corners"):
-        raise SceneError("support.kind", 'a drawing brings its ground; use "base" or "fixed-first-course"', support)
+        raise SceneError("support.kind", 'the wall brings its ground; use "base" or "fixed-first-course"', support)
     if inner_joint and joint.elasticity and not inner_joint.elasticity:
         raise SceneError("inner_joint.mortar", "is missing; joint has a stiffness, and models that need it need both")
     whole = Blocks.from_polygons(polygons)
@@ -565,4 +565,4 @@ def _gap_to(scene: Scene, floating: Mask) -> str:
     if not 0 < gap < NEAR * scene.block_size:
         return ""
     bridged = f"joints bridge {scene.blocks.tolerance:.2g} m"
-    return f" over a gap of {gap:.3g} m, and {bridged}; wall.heal closes gaps of drawings"
+    return f" over a gap of {gap:.3g} m, and {bridged}; wall.heal closes gaps of drawings and outlines"

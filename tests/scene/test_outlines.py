@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 import runningbond as rb
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.scene import SceneError
+from runningbond.scene.plausibility import warnings
 from tests.scene.drafting import BRICKS, GROUND, closed, dxf
 
 THICK: dict[str, Any] = {"thickness": 0.2, "density": 1800.0, "friction": 0.6}
@@ -69,6 +71,8 @@ def test_gaps_of_listed_stones_are_healed_as_those_of_drawn_ones_are() -> None:
         ({"outlines": [[[0, 0], [1, 0]]]}, r"wall.outlines[0] = [[0, 0], [1, 0]]: must be an outline"),
         ({"outlines": [[[0, 0], [1, 0], [1, "x"]]]}, "wall.outlines[0][2] = [1, 'x']: must be a pair"),
         ({"outlines": [[[0, 0], [1, 1], [1, 0], [0, 1]]]}, "wall.outlines[0]: crosses itself at (0.5, 0.5) m"),
+        ({"outlines": [[[0, 0], [0.1, 0.3], [0.2, 0.6]]]}, "wall.outlines[0]: has no area: its corners, the first at"),
+        ({"outlines": [[[0, 0, 0], [1, 0, 0], [1, 1, 0]]]}, "wall.outlines[0][0] = [0, 0, 0]: must be a pair"),
         ({"ground": []}, "wall.ground = []: must be a list of outlines"),
         ({"ground": [[[0, 0]]]}, "wall.ground[0] = [[0, 0]]: must be an outline"),
         ({"units": "km"}, "wall.units = 'km': must be one of"),
@@ -82,3 +86,33 @@ def test_outlines_of_no_wall_are_refused(keys: dict[str, Any], message: str) -> 
     with pytest.raises(SceneError) as refused:
         rb.Wall({**TABLES, "wall": wall})
     assert str(refused.value).startswith(message)
+
+
+def test_outlines_may_be_whatever_numpy_reads_as_arrays() -> None:
+    """Stones of unlike numbers of corners are an array of arrays; shapely's coordinates are none, but read as one."""
+    stones = np.empty(2, dtype=object)
+    stones[:] = [np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), np.array([[1, 0], [2, 0], [1, 1]])]
+    wall = rb.Wall.outlines(stones, **THICK)
+    assert wall.description["wall"]["outlines"][1] == [[1, 0], [2, 0], [1, 1]]
+    assert wall.with_({"wall.outlines[1][2]": [1, 0.5]}).scene.blocks.area[1] == pytest.approx(0.25)
+    rings = rb.Wall.outlines([shapely.Polygon(stone).exterior.coords for stone in stones], **THICK)
+    assert fingerprint(rings.scene, "limit", 0.01) == fingerprint(wall.scene, "limit", 0.01)
+
+
+def test_refusals_of_many_stones_are_one_short_line() -> None:
+    """Where a key is given without its table the message says how, and has no room for all that it was given."""
+    wall = rb.Wall.outlines(BRICKS, units="mm", **THICK)
+    for keys in ({"outlines": 50 * BRICKS}, {"wall__outlines": 50 * BRICKS}):
+        with pytest.raises(SceneError, match=r'give it as \{"wall.outlines": .*…}$') as refused:
+            wall.with_(**keys)
+        assert len(str(refused.value)) < 250
+
+
+def test_advice_about_listed_stones_speaks_of_no_drawing_and_of_keys_they_have() -> None:
+    with pytest.raises(SceneError, match="the wall brings its ground"):
+        rb.Wall.outlines(BRICKS, [GROUND], units="mm", support="corners", **THICK)
+    (length, _) = warnings(rb.Wall.outlines(BRICKS, **THICK).scene)
+    assert length.startswith("wall: length = 400: is not within")
+    apart = [np.array(brick) - [0.4 * k, 0.0] for k, brick in enumerate(BRICKS[:2])]
+    with pytest.raises(SceneError, match="wall.heal closes small overlaps of drawings and outlines"):
+        rb.Wall.outlines(apart, units="mm", **THICK)

@@ -171,7 +171,7 @@ def test_blocks_side_by_side_that_never_touch(gap: float, is_odd: bool) -> None:
 
 def test_a_drawing_in_millimetres_read_as_metres() -> None:
     (size, thick) = warnings(boxes(*((240.0 * k, 0.0, 240.0, 60.0) for k in range(6))))
-    assert size.startswith("wall.drawing: length = 1440: ")
+    assert size.startswith("wall: length = 1440: ")
     assert "is 1440 mm meant" in size
     assert thick.startswith("wall.thickness = 0.12: is odd")
 

@@ -119,6 +119,8 @@ WRONG: list[dict[str, Any]] = [
     {"wall__thickness": True},
     {"wall__ends": "ragged"},
     {"wall__courses": [1, 1]},
+    {"wall__outlines": [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]]},
+    {"wall__outlines": [[[0.0, 0.0], [1.0, 0.0]]]},
     {"wall__opening": {"from": [0.0, 0.0], "to": [1.0, 1.0]}},
     {
         "wall__opening": [{"from": [0.0, 0.0]}],

@@ -28,6 +28,9 @@ STRAIGHT = 2e-5
 STROKE = 1e-4
 """Most that rounding may be taken for, in middling pieces of what is drawn: a drawing may have strays far off."""
 
+FLAT = 1e-9
+"""Area around an outline, in squares of its larger side, that rounding leaves of corners on one line."""
+
 SLIVER = 0.01
 """Smaller side, in those of the middling block, below which an outline is what was left over, and no stone."""
 
@@ -239,6 +242,12 @@ def _cleaned(outlines: list[Array], names: list[str]) -> tuple[list[Array], str]
             raise SceneError(name, "must have at least three corners at finite coordinates")
     if not outlines:
         return [], ""
+    hulls = shapely.area(shapely.convex_hull([shapely.Polygon(outline) for outline in outlines]))
+    for outline, name, area in zip(outlines, names, hulls, strict=True):
+        span = float(np.ptp(outline, axis=0).max())
+        if area <= FLAT * span**2:
+            at = place(outline[0], span)
+            raise SceneError(name, f"has no area: its corners, the first at {at} m, lie on one line or in one point")
     least = STRAIGHT * float(np.sqrt(shapely.area([shapely.Polygon(outline) for outline in outlines]).min()))
     polygons, tips = [], []
     for outline, name in zip(outlines, names, strict=True):
