@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .scene import Scene, SceneError, read_description, scene_from_dict
 from .scene.errors import abbreviated
@@ -154,8 +155,8 @@ class Wall:
     @classmethod
     def outlines(
         cls,
-        outlines: Sequence[Any],
-        ground: Sequence[Any] | None = None,
+        outlines: Sequence[Any] | NDArray[Any],
+        ground: Sequence[Any] | NDArray[Any] | None = None,
         *,
         thickness: float,
         units: str = "m",

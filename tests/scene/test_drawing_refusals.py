@@ -60,7 +60,7 @@ SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)
         (lines((0, 0, 0, 0), layer="beds"), "holds 1 closed outline (left out: 1 LINE of no length on layer beds)"),
         (lambda _, space: space.add_arc((0, 0), 50, 0, 180), "is open at (50, 0) and (-50, 0)"),
         (polyline((0, 0), (200, 100), (200, 0), (0, 100)), "crosses itself at (0.1, 0.05) m"),
-        (polyline((0, 0), (200, 0), (0, 0), (200, 0)), "crosses itself"),
+        (polyline((0, 0), (200, 0), (0, 0), (200, 0)), "has no area: its corners, the first at (0, 0) m"),
         (polyline((0, 0), (200, 0)), "must have at least three corners"),
         (own_lines([box(0, 0, 300, 300), box(100, 100, 200, 200)]), "has a block with a hole, at (100, 100)"),
         (
