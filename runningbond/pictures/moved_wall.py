@@ -8,11 +8,13 @@ import numpy as np
 from runningbond.results.mechanism import turned
 from runningbond.scene import Array, Scene
 
-from .annotations import axes_size
+from .annotations import axes_size, metres_of_point
 from .captions import show_extent
 from .deformed_shape import DeformedShape, Extent, farthest_motion, series_scale
 from .flat import line_width, paint_blocks
+from .sketch import Sketch
 from .style import HELD
+from .ties import draw_ties
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,18 +22,30 @@ if TYPE_CHECKING:
 BESIDE, AIR = 0.75, 0.04
 """How far beside and above a wall it is drawn what has come off it, and the air around all, in sizes of the wall."""
 
+NOTHING = 0.1
+"""What a wall hardly moves by, in gaps that count as contact."""
+
 
 def moved_shape(scene: Scene, motion: Array) -> DeformedShape:
-    """Blocks after a motion ``(nb, 3)`` [m, m, rad]: as far as they are, or farther where that would not be seen."""
+    """Blocks after a motion ``(nb, 3)`` [m, m, rad]: as far as they are, or farther where that would not be seen.
+
+    A wall that moves by next to nothing is drawn as it was: the give of its joints would look like a ruin.
+    """
     shape = DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), dtype=np.int64), 0.0)
     own, blocks = scene.wall[scene.blocks.owner], scene.blocks
     displacement = turned(blocks, blocks.owner, blocks.vertices, motion)[own]
-    scale = series_scale(scene.size, farthest_motion(displacement))
+    farthest = farthest_motion(displacement)
+    scale = series_scale(scene.size, farthest) if farthest > NOTHING * blocks.tolerance else 1.0
     return replace(shape, displacement=displacement, scale=scale)
 
 
+def enlarged(shape: DeformedShape) -> str:
+    """What a title says of the scale of displacements; nothing of those that are drawn as they are."""
+    return f", displacements × {float(f'{shape.scale:.2g}'):,.12g}" if shape.scale > 1 else ""
+
+
 def draw_moved(axes: "Axes", shape: DeformedShape, extent: Extent) -> None:
-    """Draw a wall as it lies into axes that show a part of the plane."""
+    """Draw a wall as it lies, with its ties, into axes that show a part of the plane."""
     from matplotlib.collections import PolyCollection
 
     scene = shape.scene
@@ -39,6 +53,9 @@ def draw_moved(axes: "Axes", shape: DeformedShape, extent: Extent) -> None:
     ground = [scene.blocks.polygon(int(block)) for block in np.flatnonzero(~scene.wall)]
     axes.add_collection(PolyCollection(ground, facecolors=[HELD], edgecolors="none", zorder=0), autolim=False)
     paint_blocks(axes, shape, line_width(scene, extent, axes_size(axes)))
+    sketch = Sketch(metres_of_point(extent, axes_size(axes)))
+    draw_ties(sketch, shape)
+    sketch.draw(axes, 1.0)
 
 
 def extent_around(shapes: list[DeformedShape]) -> Extent:

@@ -9,18 +9,19 @@ import numpy as np
 from runningbond.response import ENERGIES, Response
 from runningbond.scene import Scene
 
+from .annotations import axes_size
 from .captions import to_png, to_svg
 from .charts import bare
 from .deformed_shape import DeformedShape
-from .moved_wall import draw_moved, extent_around, moved_shape
+from .moved_wall import draw_moved, enlarged, extent_around, moved_shape
 from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-WALLS = 2.4
-"""Height of the drawings of the wall [in]."""
+WALLS, TITLES = 2.4, 0.3
+"""Height of the drawings of the wall at most, and of the titles in it [in]."""
 
 LETTERS = 112
 """Letters in a line of the title."""
@@ -33,15 +34,15 @@ def response_figure(response: Response, scene: Scene) -> "Figure":
     """Draw what the ground did and what became of its wall: over time, and the wall as it gave way and as it lies."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6.4, 6.4 + WALLS), layout="constrained", dpi=200)
-    charts, walls = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.4, WALLS)).ravel()
-    _draw_charts(charts, response)
     shapes = shapes_of(response, scene)
-    extent = extent_around(list(shapes.values()))
+    left, right, bottom, top = extent = extent_around(list(shapes.values()))
+    height = min(TITLES + 6.4 / len(shapes) * (top - bottom) / (right - left), WALLS)
+    figure = Figure(figsize=(6.4, 6.4 + height), layout="constrained", dpi=200)
+    charts, walls = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.4, height)).ravel()
+    _draw_charts(charts, response)
     for axes, (name, shape) in zip(np.ravel(walls.subplots(1, len(shapes))), shapes.items(), strict=True):
         draw_moved(axes, shape, extent)
-        larger = f", displacements × {shape.scale:.2g}" if shape.scale > 1 else ""
-        axes.set_title(f"{name}{larger}", fontsize=SMALL_TYPE + 1)
+        axes.set_title(f"{name}{enlarged(shape)}", fontsize=SMALL_TYPE + 1)
     verdict = textwrap.wrap(f"λ = {response.scale:g}: {response.message.split(';')[0]}", LETTERS)
     title = "\n".join([*textwrap.wrap(response.scene, LETTERS), *verdict])
     figure.suptitle(title, fontsize=TYPE, parse_math=False)
@@ -98,8 +99,8 @@ class DrawnResponse(Response):
             axes = figure(layout="constrained").gca()
         shape = moved_shape(self.wall, self.motion)
         draw_moved(axes, shape, extent_around([shape]))
-        larger = f", displacements × {shape.scale:.2g}" if shape.scale > 1 else ""
-        axes.set_title(f"{self.line.split(';')[0]}{larger}", fontsize=TYPE, parse_math=False)
+        title = textwrap.wrap(f"{self.line.split(';')[0]}{enlarged(shape)}", int(axes_size(axes)[0] * LETTERS / 6.4))
+        axes.set_title("\n".join(title), fontsize=TYPE, parse_math=False)
         return axes
 
     def _repr_svg_(self) -> str | None:

@@ -1,5 +1,6 @@
 """Pictures of walls as a motion of their ground has left them."""
 
+import itertools
 import math
 from typing import Any
 
@@ -7,9 +8,10 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 
 import runningbond as rb
-from runningbond.pictures.moved_wall import BESIDE, extent_around, moved_shape
+from runningbond.pictures.moved_wall import BESIDE, NOTHING, draw_moved, enlarged, extent_around, moved_shape
 from runningbond.pictures.response import response_figure
 
 mpl.use("Agg")
@@ -58,6 +60,43 @@ def test_a_response_shows_its_wall_as_it_gives_way_and_as_it_lies(amplitude: flo
     (block,) = [each for each in response.plot().collections if isinstance(each, PolyCollection) and each.zorder == 2]
     shape = moved_shape(wall.scene, response.motion)
     assert np.asarray(block.get_paths()[0].vertices)[:4] == pytest.approx(shape.placed)
+
+
+def test_what_joints_give_is_not_drawn_as_a_wall_out_of_shape() -> None:
+    """A motion of next to nothing, which a large scale would make a ruin of."""
+    scene = shaken(0.1).scene
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[0, 0] = 0.9 * NOTHING * scene.blocks.tolerance
+    assert moved_shape(scene, motion).scale == 1.0
+    motion[0, 0] = 1.1 * NOTHING * scene.blocks.tolerance
+    assert enlarged(moved_shape(scene, motion)) == ", displacements × 11,000"
+
+
+def test_ties_are_drawn_where_their_ends_have_gone() -> None:
+    tie = {"from": [0.0, 0.5], "to": [0.25, 0.5], "area": 1e-4, "young": 2e11, "yield": 1e4}
+    scene = shaken(0.1).with_(tie=[{**tie, "to": [2.0, 0.5]}]).scene
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[0, 1] = 0.5
+    axes, shape = Figure().add_subplot(), moved_shape(scene, motion)
+    draw_moved(axes, shape, extent_around([shape]))
+    (line,) = [line for line in axes.lines if line.get_label() == "tie"]
+    assert np.column_stack(line.get_data()) == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.5]]))
+
+
+def test_charts_are_as_high_as_their_walls_need_and_titles_as_wide_as_their_axes() -> None:
+    """No band of white about a low wall, nor a title that runs over the picture beside it."""
+    tall = shaken(0.2)
+    low = tall.with_({"wall.courses": [[8, 8, 8]], "wall.block_height": 0.2})
+    tall_one, low_one = tall.respond("dem-dynamic"), low.respond("dem-dynamic")
+    assert (
+        response_figure(low_one, low.scene).get_figheight() < response_figure(tall_one, tall.scene).get_figheight() - 1
+    )
+    figure = Figure(figsize=(6.4, 2.0), layout="constrained")
+    for axes in (*figure.subplots(1, 4),):
+        tall_one.plot(axes)
+    figure.draw_without_rendering()
+    boxes = [axes.title.get_window_extent() for axes in figure.axes]
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
 
 
 def test_a_wall_that_falls_by_itself_is_drawn_as_it_was_built() -> None:
