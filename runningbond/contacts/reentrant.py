@@ -6,12 +6,14 @@ rests on both: each goes on, inside the block, behind the re-entrant corner wher
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import compress
 from typing import NamedTuple, Self
 
 import numpy as np
 import shapely
 
-from runningbond.scene import Array, Blocks, Indices
+from runningbond.scene import Array, Blocks, Indices, Mask
+from runningbond.scene.blocks import CONTACT_TOLERANCE
 
 RUN_ON = 0.5
 """How far a side runs on behind a re-entrant corner, in parts of its way through the block."""
@@ -56,15 +58,31 @@ class RunOn(NamedTuple):
         """Let the sides of blocks, of directions ``(nv, 2)``, run on."""
         corners = np.column_stack([np.arange(len(run)), blocks.successor])
         side, end = np.nonzero(blocks.reentrant[corners])
-        outwards, corner = np.where(end == 1, 1.0, -1.0)[:, None] * run[side], blocks.vertices[corners[side, end]]
-        far = np.empty(len(side))
-        for row, number in enumerate(side):
-            polygon = blocks.polygon(blocks.owner[number])
-            ray = shapely.LineString([corner[row], corner[row] + np.ptp(polygon, axis=0).sum() * outwards[row]])
-            met = shapely.get_coordinates(ray.intersection(shapely.LinearRing(polygon)))
-            away = (met - corner[row]) @ outwards[row]
-            far[row] = RUN_ON * away[away > blocks.tolerance].min()
-        return cls(side, end, far, corner + far[:, None] * outwards)
+        corner, outwards = corners[side, end], np.where(end == 1, 1.0, -1.0)[:, None] * run[side]
+        first = blocks.first
+        ways = zip(corner, outwards, blocks.owner[corner], strict=True)
+        way = [
+            _way_through(blocks.polygon(block), at - first[block], along, blocks.tolerance) for at, along, block in ways
+        ]
+        far = RUN_ON * np.array(way)
+        return cls(side, end, far, blocks.vertices[corner] + far[:, None] * outwards)
+
+
+def _way_through(polygon: Array, corner: int, along: Array, tolerance: float) -> float:
+    """How far it is from a re-entrant corner of a polygon ``(n, 2)``, along a unit vector, to the outline again [m].
+
+    A corner that is no farther off than the tolerance [m] is on the way, or sides in line with each other, as those on
+    both sides of a step are, would run on beneath one another by rounding.
+    """
+    n, reach = len(polygon), polygon - polygon[corner]
+    ahead, off = reach @ along, reach @ [-along[1], along[0]]
+    after, off_after = np.array([ahead, off])[:, np.arange(1 - n, 1)]
+    others, sides = np.full((2, n), True)
+    others[corner] = sides[corner] = sides[corner - 1] = False
+    passed = ahead[others & (np.abs(off) <= tolerance) & (ahead > 0)]
+    crossed = np.flatnonzero(sides & (off * off_after < 0))
+    met = (ahead * off_after - after * off)[crossed] / (off_after - off)[crossed]
+    return float(np.concatenate([passed, met[met > 0]]).min())
 
 
 def _parts(polygon: Array) -> Iterator[Indices]:
@@ -72,29 +90,39 @@ def _parts(polygon: Array) -> Iterator[Indices]:
     rings = [np.arange(len(polygon))]
     while rings:
         ring = rings.pop()
-        reentrant = np.flatnonzero(Blocks.from_polygons([polygon[ring]]).reentrant)
-        if not len(reentrant):
+        n, at = len(ring), polygon[ring]
+        reentrant = _turns_right(at[np.arange(-1, n - 1)], at, at[np.arange(1 - n, 1)])
+        if not reentrant.any():
             yield ring
             continue
-        rings += [ring[part] for part in _halves(polygon[ring], int(reentrant[0]))]
+        rings += [ring[part] for part in _halves(at, reentrant)]
 
 
-def _halves(ring: Array, corner: int) -> tuple[Indices, Indices]:
-    """Two parts of a polygon ``(n, 2)``, cut from a re-entrant corner to another one.
+def _halves(ring: Array, reentrant: Mask) -> tuple[Indices, Indices]:
+    """Two parts of a polygon ``(n, 2)``, cut from its first re-entrant corner ``(n,)`` to another corner.
 
     To that which leaves the fewest re-entrant corners, and the nearest of those.
     """
-    n, whole = len(ring), shapely.Polygon(ring)
+    n, whole, corner = len(ring), shapely.Polygon(ring), int(np.argmax(reentrant))
     others = np.mod(corner + np.arange(2, n - 1), n)
+    here, there = ring[[corner]], ring[others]
+    left = -reentrant[others].astype(int)
+    for before, at, after in (
+        (there, here, ring[[corner + 1 - n]]),
+        (ring[[corner - 1]], here, there),
+        (here, there, ring[others + 1 - n]),
+        (ring[others - 1], there, here),
+    ):
+        left += _turns_right(before, at, after)
+    best = others[np.lexsort([np.hypot(*(there - here).T), left])].tolist()
     # Inside all along: one that touches another corner on its way would leave a part that touches itself.
-    seen = shapely.relate_pattern(whole, shapely.linestrings([ring[[corner, other]] for other in others]), "1**F**FF*")
+    seen = (shapely.relate_pattern(whole, shapely.LineString(ring[[corner, other]]), "1**F**FF*") for other in best)
+    low, high = sorted((corner, next(compress(best, seen))))
+    return np.arange(low, high + 1), np.concatenate([np.arange(high, n), np.arange(low + 1)])
 
-    def halves(other: int) -> tuple[Indices, Indices]:
-        low, high = min(corner, other), max(corner, other)
-        return np.arange(low, high + 1), np.concatenate([np.arange(high, n), np.arange(low + 1)])
 
-    def cost(other: int) -> tuple[int, float]:
-        parts = Blocks.from_polygons([ring[half] for half in halves(other)])
-        return int(parts.reentrant.sum()), float(np.hypot(*(ring[other] - ring[corner])))
-
-    return halves(min(others[seen].tolist(), key=cost))
+def _turns_right(before: Array, at: Array, after: Array) -> Mask:
+    """Whether an outline turns right, by more than the contact tolerance, at points ``(n, 2)`` between two others."""
+    here, there = at - before, after - at
+    turn = here[:, 0] * there[:, 1] - here[:, 1] * there[:, 0]
+    return np.asarray(turn < -CONTACT_TOLERANCE * np.hypot(*here.T) * np.hypot(*there.T))

@@ -13,7 +13,7 @@ from dem.dynamic import dem_dynamic
 from dem.finite_system import finite_system
 from fem_interface.model import fem
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.reentrant import ConvexParts
+from runningbond.contacts.reentrant import RUN_ON, ConvexParts, RunOn
 from runningbond.contacts.search import find_contacts, jumps
 from runningbond.limit import limit_nonassociated
 from runningbond.response import follow
@@ -65,6 +65,38 @@ def test_blocks_are_cut_into_convex_parts_that_share_no_area(star: Array) -> Non
     for side, part in enumerate(parts.of_side):
         at = np.flatnonzero(rings[part] == side)
         assert np.roll(rings[part], -1)[at] == [blocks.successor[side]]
+
+
+def turned_by(turn: float, outline: Any) -> Array:
+    corners = np.array(outline, dtype=float)
+    return np.asarray(corners @ [[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+
+
+def ways_on(outline: Array) -> RunOn:
+    """How the sides of a block run on, beside another that is of no account."""
+    blocks = Blocks.from_polygons([outline, np.array(box(9, 9, 10, 10), dtype=float)])
+    run = blocks.vertices[blocks.successor] - blocks.vertices
+    return RunOn.of(blocks, run / np.hypot(*run.T)[:, None])
+
+
+CROSS = [(1, 0), (2, 0), (2, 3), (6, 3), (6, 4), (2, 4), (2, 7), (1, 7), (1, 4), (-3, 4), (-3, 3), (1, 3)]
+
+
+@given(st.floats(-3.1, 3.1))
+def test_a_side_runs_on_half_way_to_the_one_in_line_with_it(turn: float) -> None:
+    """Of a cross whose middle is 1 m by 1 m, and not on beneath the arm over there, however it is turned."""
+    ways = ways_on(turned_by(turn, CROSS))
+    assert ways.far == pytest.approx(np.full(8, RUN_ON), rel=1e-9)
+
+
+@given(st.floats(-3.1, 3.1), st.floats(1e-6, 1.0))
+def test_a_side_runs_on_inside_its_block_however_thin_that_is(turn: float, neck: float) -> None:
+    """A notch that leaves but a neck, thinner even than what counts as contact."""
+    outline = turned_by(turn, [(0, 0), (5, 0), (5, 3), (3, 3), (3, neck), (2, neck), (2, 3), (0, 3)])
+    ways = ways_on(outline)
+    assert len(ways.far) == 4
+    inside = shapely.Polygon(outline).buffer(1e-9)
+    assert all(inside.covers(shapely.Point(point)) for point in ways.point)
 
 
 FORMS = [np.array(outline, dtype=float) for outline in (ELL, PORTAL, TEE)]
