@@ -131,7 +131,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     turned = spin[owner[e]] - spin[owner[f]]
     tilt = np.mod(tilt + turned + np.pi, 2 * np.pi) - np.pi - turned
     joint = outline.joint_of(e, f)
-    area = _area(outline, e, f, joint, motion)
+    area = _area(outline, e, f, joint, np.abs(tilt + turned), motion)
     (first_e, last_e), (first_f, last_f) = outline.ends[e].T, outline.ends[f].T
     low = np.column_stack([last_e, first_f, first_e, last_f, e, f])
     high = np.column_stack([first_e, last_f, last_e, first_f, e, f])
@@ -160,16 +160,24 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
 def _with_the_side_that_faces(outline: Outline, contacts: Contacts, lean: Array, motion: Array) -> Mask:
     """Whether corners rest on a side with that of their own two which faces it; sides lean by ``(n,)`` [rad] on it.
 
-    The arc of a corner belongs half to each. A flat corner rests with both, each of which stands for its own area.
+    The arc of a corner belongs half to each. A flat corner rests with both, each of which stands for its own area. So
+    does one on which another is about to come to rest, with that of its sides which is to bear it.
     """
-    (corner, side), e = resting(outline, contacts, motion), contacts.ends[:, 4].astype(np.int64)
-    exterior, own = outline.exterior[corner], outline.side[corner]
-    angle = np.arctan2(*outline.normal.T[::-1]) + motion[2::3][outline.blocks.owner]
-    # From the bisector of the corner to the side, in the same numbers for both sides, or at 45° neither might face it.
-    off = np.mod(angle[own] - exterior / 2 - angle[side], 2 * np.pi) - np.pi
-    at_start = (contacts.inwards < 0) == (side != e)
-    faces: Mask = np.where(at_start, off <= 0, off > 0) & (lean <= exterior / 2 + SAME_ANGLE)
-    return faces | (lean <= FLAT)
+    corner, side = resting(outline, contacts, motion)
+    v, w, _, _, e, f = contacts.ends.astype(np.int64).T
+    angle, arcs = np.arctan2(*outline.normal.T[::-1]) + motion[2::3][outline.blocks.owner], outline.placed(motion).arcs
+
+    def faces(corner: Indices, side: Indices) -> Mask:
+        exterior, own = outline.exterior[corner], outline.side[corner]
+        # From the bisector of the corner to the side, in the same numbers for both sides, or at 45° neither might face.
+        off = np.mod(angle[own] - exterior / 2 - angle[side], 2 * np.pi) - np.pi
+        at_start = (contacts.inwards < 0) == (side != e)
+        return np.asarray(np.where(at_start, off <= 0, off > 0) & (lean <= exterior / 2 + SAME_ANGLE))
+
+    soon = np.hypot(*(arcs[v, :2] - arcs[w, :2]).T) < contacts.margin
+    soon &= faces(np.where(corner == v, w, v), np.where(side == f, e, f))
+    faced: Mask = faces(corner, side) | soon | (lean <= FLAT)
+    return faced
 
 
 def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:
@@ -235,13 +243,14 @@ def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indice
     return e[order], f[order]
 
 
-def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Array) -> Array:
-    """Area of each end of facing sides after a motion ``(3 nb,)``, ``(n,)`` [m²].
+def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array, motion: Array) -> Array:
+    """Area of each end of facing sides, leaning by ``(n,)`` [rad], after a motion ``(3 nb,)``, ``(n,)`` [m²].
 
     Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
     at least `LEAST_OVERLAP`, at most half the shorter one, which is what running bond gives them from the start: as a
     block slides from one onto another, the share of that one grows. What sides run on by counts as theirs, or a corner
-    in a notch would have nothing to lean on.
+    in a notch would have nothing to lean on. A corner that comes round the end of a side onto it, leaning, goes in
+    before contacts are sought again: it has what it overlaps by then.
     """
     length, joints, ends = outline.length, outline.joints.length, outline.ends_of_sides(motion)
     reach = length + outline.run_on.sum(axis=1)
@@ -249,7 +258,8 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Arra
     first, last = (((ends[e, end] - ends[f, 0]) * along).sum(axis=1) for end in (1, 0))
     overlap = np.minimum(last, reach[f]) - np.maximum(first, 0.0)
     shorter = np.minimum(length[e], length[f])
-    later = np.clip(overlap, LEAST_OVERLAP * shorter, shorter / 2)
+    least = np.where(lean > FLAT, np.minimum(outline.margin, shorter / 2), LEAST_OVERLAP * shorter)
+    later = np.clip(overlap, least, shorter / 2)
     shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
     return shared * outline.thickness / 2
 
