@@ -250,7 +250,7 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
     at least `LEAST_OVERLAP`, at most half the shorter one, which is what running bond gives them from the start: as a
     block slides from one onto another, the share of that one grows. What sides run on by counts as theirs, or a corner
     in a notch would have nothing to lean on. A corner that comes round the end of a side onto it, leaning, goes in
-    before contacts are sought again: it has what it overlaps by then.
+    before contacts are sought again, the farther the more it leans: it has what it overlaps by then.
     """
     length, joints, ends = outline.length, outline.joints.length, outline.ends_of_sides(motion)
     reach = length + outline.run_on.sum(axis=1)
@@ -258,8 +258,8 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
     first, last = (((ends[e, end] - ends[f, 0]) * along).sum(axis=1) for end in (1, 0))
     overlap = np.minimum(last, reach[f]) - np.maximum(first, 0.0)
     shorter = np.minimum(length[e], length[f])
-    least = np.where(lean > FLAT, np.minimum(outline.margin, shorter / 2), LEAST_OVERLAP * shorter)
-    later = np.clip(overlap, least, shorter / 2)
+    by_then = outline.margin * np.minimum(lean / FLAT, 1.0)
+    later = np.clip(overlap, np.clip(by_then, LEAST_OVERLAP * shorter, shorter / 2), shorter / 2)
     shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
     return shared * outline.thickness / 2
 

@@ -13,15 +13,15 @@ from .test_reentrant import stones
 TURNS = np.tan([0.28, 0.19, 0.27])
 """Slopes of the side beyond the end, of the stone's side that slides on it, and of its side round the corner."""
 
-EDGE = np.array([(-1, -1), (0.8, -1), (0.5, -0.5 * TURNS[0]), (0, 0), (-1, 0)])
-STONE = np.array([(0, 0), (0.8, 0.8 * TURNS[2]), (0.8, 1.5), (-0.8, 1.5), (-0.8, 0.8 * TURNS[1])])
 AWAY = 5.0
 
 
-def pair(mirrored: bool) -> tuple[Scene, Outline]:
+def pair(mirrored: bool, steep: float = 1.0) -> tuple[Scene, Outline]:
     """A stone that hangs from a roof, and another one, on the floor, whose upper side ends at (0, 0)."""
-    sense = -1 if mirrored else 1
-    outlines = EDGE, STONE + [AWAY, 0.0], box(-2, -1.2, 2, -1.0), box(AWAY - 1, 1.5, AWAY + 1, 1.7)
+    sense, (falls, rises, flank) = -1 if mirrored else 1, steep * TURNS
+    edge = np.array([(-1, -1), (0.8, -1), (0.5, -0.5 * falls), (0, 0), (-1, 0)])
+    stone = np.array([(0, 0), (0.8, 0.8 * flank), (0.8, 1.5), (-0.8, 1.5), (-0.8, 0.8 * rises)])
+    outlines = edge, stone + [AWAY, 0.0], box(-2, -1.2, 2, -1.0), box(AWAY - 1, 1.5, AWAY + 1, 1.7)
     lower, upper, *grounds = [(np.array(outline) * [sense, 1])[::sense] for outline in outlines]
     scene = stones(lower, upper, friction=0.6, grounds=grounds)
     return scene, Outline.of(scene)
@@ -47,10 +47,11 @@ def test_a_corner_that_slides_over_another_is_known_on_the_side_behind_it(mirror
         assert jumps(outline, contacts, after)[0].min() == pytest.approx(-deep, rel=1e-9)
 
 
+@pytest.mark.parametrize("steep", [1.0, 0.2])
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_corner_has_an_area_to_rest_on_where_it_comes_to_lie(mirrored: bool) -> None:
+def test_a_corner_has_an_area_to_rest_on_where_it_comes_to_lie(mirrored: bool, steep: float) -> None:
     """Before it comes there; or it would go in against nothing, and be thrown back once contacts are sought again."""
-    scene, outline = pair(mirrored)
+    scene, outline = pair(mirrored, steep)
     outside = 0.1 * outline.margin
     before, after = (moved(scene, mirrored, along, 0.0) for along in (outside, -outside))
     found, anew = find_contacts(outline, before, outline.margin), find_contacts(outline, after, outline.margin)
