@@ -117,13 +117,6 @@ class Outline:
         """Corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
         return self.points(self.blocks.owner, self.blocks.vertices, motion)
 
-    def ends_of_sides(self, motion: Array) -> Array:
-        """Both ends of each side after a motion ``(3 nb,)``, with what it runs on by, ``(nv, 2, 2)`` [m]."""
-        corners = self.corners(motion)
-        ends, runs_on = np.stack([corners, corners[self.blocks.successor]], axis=1), self.run_on > 0
-        ends[runs_on] = self.placed(motion).arcs[self.ends[runs_on], :2]
-        return ends
-
     def points(self, block: Indices, at: Array, motion: Array) -> Array:
         """Points of blocks, given on the undeformed wall, after a motion ``(3 nb,)``, ``(n, 2)`` [m]."""
         cosine, sine, x, y = self.placed(motion).blocks[:, block]

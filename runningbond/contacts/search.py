@@ -248,15 +248,18 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
 
     Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
     at least `LEAST_OVERLAP`, at most half the shorter one, which is what running bond gives them from the start: as a
-    block slides from one onto another, the share of that one grows. What sides run on by counts as theirs, or a corner
-    in a notch would have nothing to lean on. A corner that comes round the end of a side onto it, leaning, goes in
-    before contacts are sought again, the farther the more it leans: it has what it overlaps by then.
+    block slides from one onto another, the share of that one grows. What sides run on by counts as theirs where they
+    lean, or a corner in a notch would have nothing to lean on; one that lies flat has the side beside it. A corner that
+    comes round the end of a side onto it, leaning, goes in before contacts are sought again, the farther the more it
+    leans: it has what it overlaps by then.
     """
-    length, joints, ends = outline.length, outline.joints.length, outline.ends_of_sides(motion)
-    reach = length + outline.run_on.sum(axis=1)
-    along = (ends[f, 1] - ends[f, 0]) / reach[f, None]
-    first, last = (((ends[e, end] - ends[f, 0]) * along).sum(axis=1) for end in (1, 0))
-    overlap = np.minimum(last, reach[f]) - np.maximum(first, 0.0)
+    length, joints = outline.length, outline.joints.length
+    corners, after = outline.corners(motion), outline.blocks.successor
+    along = (corners[after[f]] - corners[f]) / length[f, None]
+    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
+    behind = np.where((lean > FLAT)[:, None], [outline.run_on[e] * np.cos(lean)[:, None], outline.run_on[f]], 0.0)
+    (behind_last, behind_first), (before, beyond) = behind.transpose(0, 2, 1)
+    overlap = np.minimum(last + behind_last, length[f] + beyond) - np.maximum(first - behind_first, -before)
     shorter = np.minimum(length[e], length[f])
     by_then = outline.margin * np.minimum(lean / FLAT, 1.0)
     later = np.clip(overlap, np.clip(by_then, LEAST_OVERLAP * shorter, shorter / 2), shorter / 2)

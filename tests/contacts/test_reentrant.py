@@ -183,6 +183,20 @@ def test_a_portal_topples_about_the_toe_of_its_leg(model: Any) -> None:
     follows(outcome, np.tan(math.atan2(side - x, y) - turned))
 
 
+@pytest.mark.parametrize("turn", [0.01, 0.05, 0.2])
+def test_stones_on_a_crooked_bed_bear_on_the_area_of_their_joints(turn: float) -> None:
+    """Sides beside those that lie on each other add no more than what a corner may come to lean on."""
+    x = np.linspace(-0.2, 0.2, 9)
+    bed = np.column_stack([x, 0.5 + 0.025 * turn * (1 - np.arange(9) % 2)])
+    scene = stones([(-0.2, 0), (0.2, 0), *bed[::-1]], [*bed, (0.2, 1), (-0.2, 1)], friction=1.5)
+    outline, motion = Outline.of(scene), np.zeros(3 * len(scene.blocks))
+    contacts = find_contacts(outline, motion, outline.margin)
+    closed = np.abs(jumps(outline, contacts, motion)[0]) < 1e-9
+    borne = contacts.area[closed & (contacts.joint >= 0)].sum()
+    assert borne == pytest.approx(scene.thickness * scene.joints.length.sum())
+    assert contacts.area[closed].sum() < 1.08 * borne
+
+
 def interlocked(cells: list[str], **keys: Any) -> Scene:
     """Stones of cells of 0.3 by 0.2 m, the rows from above, each letter a stone."""
     places = [
