@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from runningbond.scene import Array, Blocks, Indices, Mask
-from runningbond.scene.blocks import CONTACT_TOLERANCE
+from runningbond.scene.blocks import turns_right
 
 RUN_ON = 0.5
 """How far a side runs on behind a re-entrant corner, in parts of its way through the block."""
@@ -91,7 +91,7 @@ def _parts(polygon: Array) -> Iterator[Indices]:
     while rings:
         ring = rings.pop()
         n, at = len(ring), polygon[ring]
-        reentrant = _turns_right(at[np.arange(-1, n - 1)], at, at[np.arange(1 - n, 1)])
+        reentrant = turns_right(at - at[np.arange(-1, n - 1)], at[np.arange(1 - n, 1)] - at)
         if not reentrant.any():
             yield ring
             continue
@@ -113,16 +113,9 @@ def _halves(ring: Array, reentrant: Mask) -> tuple[Indices, Indices]:
         (here, there, ring[others + 1 - n]),
         (ring[others - 1], there, here),
     ):
-        left += _turns_right(before, at, after)
+        left += turns_right(at - before, after - at)
     best = others[np.lexsort([np.hypot(*(there - here).T), left])].tolist()
     # Inside all along: one that touches another corner on its way would leave a part that touches itself.
     seen = (shapely.relate_pattern(whole, shapely.LineString(ring[[corner, other]]), "1**F**FF*") for other in best)
     low, high = sorted((corner, next(compress(best, seen))))
     return np.arange(low, high + 1), np.concatenate([np.arange(high, n), np.arange(low + 1)])
-
-
-def _turns_right(before: Array, at: Array, after: Array) -> Mask:
-    """Whether an outline turns right, by more than the contact tolerance, at points ``(n, 2)`` between two others."""
-    here, there = at - before, after - at
-    turn = here[:, 0] * there[:, 1] - here[:, 1] * there[:, 0]
-    return np.asarray(turn < -CONTACT_TOLERANCE * np.hypot(*here.T) * np.hypot(*there.T))

@@ -150,22 +150,24 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     close = np.abs(opening) < FASTEST_OPENING * margin
     near = np.tile(close[:n] | close[n:], 2)
     near[near] = ~_past_each_other(outline, both.chosen(near), opening[near], motion)
-    near &= _with_the_side_that_faces(outline, both, np.abs(np.tile(tilt + turned, 2)), motion)
+    angle, lean = swing + spin[owner], np.abs(np.tile(tilt + turned, 2))
+    near &= _with_the_side_that_faces(outline, both, angle, lean, motion)
     # One that is there for the sake of another, which it is not now, might be anywhere: as sides turn across each
     # other it would go from far away to far inside at once.
     there = near & close
     return both.chosen(near & np.tile(there[:n] | there[n:], 2))
 
 
-def _with_the_side_that_faces(outline: Outline, contacts: Contacts, lean: Array, motion: Array) -> Mask:
+def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array, lean: Array, motion: Array) -> Mask:
     """Whether corners rest on a side with that of their own two which faces it; sides lean by ``(n,)`` [rad] on it.
 
-    The arc of a corner belongs half to each. A flat corner rests with both, each of which stands for its own area. So
-    does one on which another is about to come to rest, with that of its sides which is to bear it.
+    Normals of sides are at angles ``(nv,)`` [rad]. The arc of a corner belongs half to each. A flat corner rests with
+    both, each of which stands for its own area. So does one on which another is about to come to rest, with that of its
+    sides which is to bear it.
     """
     corner, side = resting(outline, contacts, motion)
     v, w, _, _, e, f = contacts.ends.astype(np.int64).T
-    angle, arcs = np.arctan2(*outline.normal.T[::-1]) + motion[2::3][outline.blocks.owner], outline.placed(motion).arcs
+    arcs = outline.placed(motion).arcs
 
     def faces(corner: Indices, side: Indices) -> Mask:
         exterior, own = outline.exterior[corner], outline.side[corner]

@@ -219,6 +219,11 @@ def series_scale(size: float, farthest: float) -> float:
     return max(1.0, visible_scale(size, farthest))
 
 
+def scale_note(shape: DeformedShape) -> str:
+    """What is said of how displacements are drawn."""
+    return f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
+
+
 def usual_side(scene: Scene) -> float:
     """Smaller side that half of a wall's blocks have at least [m], by which lines and signs on them are measured.
 

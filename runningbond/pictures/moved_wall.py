@@ -10,7 +10,7 @@ from runningbond.scene import Array, Scene
 
 from .annotations import axes_size, metres_of_point
 from .captions import show_extent
-from .deformed_shape import DeformedShape, Extent, farthest_motion, series_scale
+from .deformed_shape import DeformedShape, Extent, farthest_motion, scale_note, series_scale
 from .flat import line_width, paint_blocks
 from .sketch import Sketch
 from .style import HELD
@@ -41,7 +41,7 @@ def moved_shape(scene: Scene, motion: Array) -> DeformedShape:
 
 def enlarged(shape: DeformedShape) -> str:
     """What a title says of the scale of displacements; nothing of those that are drawn as they are."""
-    return f", displacements × {float(f'{shape.scale:.2g}'):,.12g}" if shape.scale > 1 else ""
+    return f", {scale_note(shape)}" if shape.scale > 1 else ""
 
 
 def draw_moved(axes: "Axes", shape: DeformedShape, extent: Extent) -> None:

@@ -22,7 +22,7 @@ from .captions import (
     show_extent,
     wall_title,
 )
-from .deformed_shape import DeformedShape, Extent, common_extent, undeformed_shape
+from .deformed_shape import DeformedShape, Extent, common_extent, scale_note, undeformed_shape
 from .mechanism import mechanism_shape
 from .pyvista_painter import Painter, square_around
 from .style import STATE_COLOURS, Colouring
@@ -51,10 +51,9 @@ def frame_figure(
     film = film or (shape,)
     load = f"{outcome.model}: {load_text(shape.scene, shape.multiplier)}"
     load += "" if shape.time is None else f", t = {shape.time:.3f} s"
-    note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
     states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]
     key = [*colour_key(states, shape.colouring, crushes=any(len(one.crosses) for one in film)), *held_key(shape.scene)]
-    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), film)
+    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [scale_note(shape)], key), film)
 
 
 def _figure(shape: DeformedShape, painter: Painter, caption: Caption, film: tuple[DeformedShape, ...]) -> "Figure":

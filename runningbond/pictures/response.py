@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-WALLS, TITLES = 2.4, 0.3
-"""Height of the drawings of the wall at most, and of the titles in it [in]."""
+WIDE, CHARTS, WALLS, TITLES = 6.4, 6.4, 2.4, 0.3
+"""Width of the figure, heights of its charts, of the drawings of the wall at most, and of the titles in it [in]."""
 
 LETTERS = 112
 """Letters in a line of the title."""
@@ -36,9 +36,9 @@ def response_figure(response: Response, scene: Scene) -> "Figure":
 
     shapes = shapes_of(response, scene)
     left, right, bottom, top = extent = extent_around(list(shapes.values()))
-    height = min(TITLES + 6.4 / len(shapes) * (top - bottom) / (right - left), WALLS)
-    figure = Figure(figsize=(6.4, 6.4 + height), layout="constrained", dpi=200)
-    charts, walls = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.4, height)).ravel()
+    height = min(TITLES + WIDE / len(shapes) * (top - bottom) / (right - left), WALLS)
+    figure = Figure(figsize=(WIDE, CHARTS + height), layout="constrained", dpi=200)
+    charts, walls = figure.subfigures(2, 1, squeeze=False, height_ratios=(CHARTS, height)).ravel()
     _draw_charts(charts, response)
     for axes, (name, shape) in zip(np.ravel(walls.subplots(1, len(shapes))), shapes.items(), strict=True):
         draw_moved(axes, shape, extent)
@@ -99,7 +99,7 @@ class DrawnResponse(Response):
             axes = figure(layout="constrained").gca()
         shape = moved_shape(self.wall, self.motion)
         draw_moved(axes, shape, extent_around([shape]))
-        title = textwrap.wrap(f"{self.line.split(';')[0]}{enlarged(shape)}", int(axes_size(axes)[0] * LETTERS / 6.4))
+        title = textwrap.wrap(f"{self.line.split(';')[0]}{enlarged(shape)}", int(axes_size(axes)[0] * LETTERS / WIDE))
         axes.set_title("\n".join(title), fontsize=TYPE, parse_math=False)
         return axes
 

@@ -112,7 +112,8 @@ class Blocks:
     @cached_property
     def convex(self) -> Mask:
         """Blocks without re-entrant corners that go round once, ``(nb,)``."""
-        turn, along, _ = self._turns
+        edge, after = self._edges
+        turn, along = cross(edge, after), (edge * after).sum(axis=1)
         reflex = np.logical_or.reduceat(self.reentrant, self.first[:-1])
         # A polygon that winds twice has only left turns, and yet crosses itself.
         twice = np.add.reduceat(np.arctan2(turn, along), self.first[:-1]) > 3 * np.pi
@@ -121,19 +122,16 @@ class Blocks:
     @cached_property
     def reentrant(self) -> Mask:
         """Corners that turn right, by more than the contact tolerance, ``(nv,)``."""
-        turn, _, scale = self._turns
-        turns_right = np.empty(len(turn), dtype=np.bool_)
-        turns_right[self.successor] = turn < -CONTACT_TOLERANCE * scale
-        return frozen(turns_right, np.bool_)
+        reentrant = np.empty(len(self.vertices), dtype=np.bool_)
+        reentrant[self.successor] = turns_right(*self._edges)
+        return frozen(reentrant, np.bool_)
 
     @property
-    def _turns(self) -> tuple[Array, Array, Array]:
-        """Of each edge and the next, the cross product, the dot product and that of their lengths, ``(nv,)`` [m²]."""
+    def _edges(self) -> tuple[Array, Array]:
+        """Each edge and the next, two ``(nv, 2)`` [m]."""
         here, there, _ = self._local
         edge = there - here
-        after, length = edge[self.successor], np.hypot(*edge.T)
-        turn = edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0]
-        return turn, (edge * after).sum(axis=1), length * length[self.successor]
+        return edge, edge[self.successor]
 
     def shapes(self, block: Indices) -> NDArray[np.object_]:
         """Some blocks as polygons of shapely's, ``(n,)``."""
@@ -201,6 +199,16 @@ class Blocks:
         low, high = self.boxes
         a, b = touching_boxes(low - self.tolerance, high + self.tolerance)
         return a[a < b], b[a < b]
+
+
+def cross(here: Array, there: Array) -> Array:
+    """Cross products of edges ``(n, 2)`` and the next ones, ``(n,)`` [m²]."""
+    return np.asarray(here[:, 0] * there[:, 1] - here[:, 1] * there[:, 0])
+
+
+def turns_right(here: Array, there: Array) -> Mask:
+    """Whether an outline turns right, by more than the contact tolerance, from edges ``(n, 2)`` to the next ones."""
+    return np.asarray(cross(here, there) < -CONTACT_TOLERANCE * (np.hypot(*here.T) * np.hypot(*there.T)))
 
 
 def touching_boxes(low: Array, high: Array) -> tuple[Indices, Indices]:

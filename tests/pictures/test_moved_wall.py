@@ -69,7 +69,7 @@ def test_what_joints_give_is_not_drawn_as_a_wall_out_of_shape() -> None:
     motion[0, 0] = 0.9 * NOTHING * scene.blocks.tolerance
     assert moved_shape(scene, motion).scale == 1.0
     motion[0, 0] = 1.1 * NOTHING * scene.blocks.tolerance
-    assert enlarged(moved_shape(scene, motion)) == ", displacements × 11,000"
+    assert enlarged(moved_shape(scene, motion)) == ", displacements × 10,900"
 
 
 def test_ties_are_drawn_where_their_ends_have_gone() -> None:
