@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from .own_packages import prefer_to_folders
 
 if TYPE_CHECKING:
+    __version__: str
     from .draws import Draws
     from .fragilities import Fragility, fragility
     from .path_states import PathState
@@ -32,6 +33,10 @@ else:
 
     def __getattr__(name):
         """Import what is asked for (PEP 562)."""
+        if name == "__version__":
+            from importlib.metadata import version
+
+            return version(__name__)
         if name not in _MODULES:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         from importlib import import_module

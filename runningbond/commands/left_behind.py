@@ -6,7 +6,7 @@ from pathlib import Path
 
 from runningbond.pictures.time_series import KINDS
 from runningbond.results import make_folder
-from runningbond.results.store import ARRAY_FILES, RECORD
+from runningbond.results.store import ARRAY_FILES, RECORD, RESPONSE_RECORD
 from runningbond.scene import SceneError
 from runningbond.scene.folder_lock import claim
 
@@ -46,6 +46,6 @@ def remove_older(folder: Path, *, record: bool = False) -> None:
     from runningbond.pictures.render import PICTURES
 
     outcome = (RECORD, *(path.name for path in folder.glob(ARRAY_FILES))) if record else ()
-    response = RESPONSE_FILES if all((folder / name).exists() for name in RESPONSE_FILES) else ()
+    response = (*RESPONSE_FILES, RESPONSE_RECORD) if all((folder / name).exists() for name in RESPONSE_FILES) else ()
     for name in (f"{DRAWS}.json", *CURVE_FILES, *response, *PICTURES, *outcome):
         (folder / name).unlink(missing_ok=True)

@@ -5,12 +5,10 @@ import sys
 from pathlib import Path
 
 from runningbond.pictures.style import Colouring
-from runningbond.pictures.time_series import MACRO
 from runningbond.results import StoreError, load_scene
-from runningbond.results.store import RECORD
+from runningbond.results.store import RECORD, RESPONSE_RECORD
 from runningbond.scene import SceneError
 
-from .left_behind import RESPONSE_FILES
 from .terminal import DONE, NO_ANSWER, Flag, can_draw
 
 LISTED = 6
@@ -31,7 +29,7 @@ def render(
     Parameters
     ----------
     folder
-        Folder of one outcome: that of run --out, or scene/model in that of compare.
+        Folder of one outcome or response: that of run --out or respond --out, or scene/model in that of compare.
     colour
         Colour painted blocks by displacement or by course.
     view
@@ -56,13 +54,12 @@ def render(
 
 
 def _check(folder: Path) -> None:
-    """Refuse a folder without an outcome; where folders in it have one, the line names them."""
-    inner = [] if (folder / RECORD).is_file() else sorted(path.parent for path in folder.rglob(RECORD))
+    """Refuse a folder without an outcome or a response; where folders in it have one, the line names them."""
+    records = (RECORD, RESPONSE_RECORD)
+    holds = any((folder / name).is_file() for name in records)
+    inner = [] if holds else sorted({path.parent for name in records for path in folder.rglob(name)})
     if inner:
         more = f" and {len(inner) - LISTED} more" if len(inner) > LISTED else ""
         what = f"holds no outcome itself; draw one of {', '.join(map(str, inner[:LISTED]))}{more}"
-        raise StoreError(f"{folder}: {what}")
-    if not (folder / RECORD).is_file() and (folder / RESPONSE_FILES[0]).is_file():
-        what = f"holds a response, which is in {' and '.join(RESPONSE_FILES)}; {MACRO} shows its motion in ParaView"
         raise StoreError(f"{folder}: {what}")
     load_scene(folder)

@@ -15,6 +15,7 @@ from runningbond.models import respond as respond_with
 from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, write_atomically
+from runningbond.results.store import RESPONSE_RECORD, save_response
 from runningbond.scene import read_scene
 
 from .left_behind import RESPONSE_FILES, holds_results, own_folder, remove_older
@@ -41,7 +42,8 @@ def respond(
     model
         Name of the model.
     out
-        Folder in which to keep the response as a table and as a chart, and its time series for ParaView.
+        Folder in which to keep the response as a table and as a chart, and its time series for ParaView, of which
+        render makes a film.
     """
     from runningbond.pictures.progress import ResponseProgress
 
@@ -71,7 +73,7 @@ def respond(
         if len(response.time):
             _keep(response, wall, out)
             if not json:
-                written = (*RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
+                written = (RESPONSE_RECORD, *RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
                 print("\n".join(str(out / name) for name in written))
         elif is_new:
             with suppress(OSError):  # somebody else has used it since
@@ -80,7 +82,7 @@ def respond(
 
 
 def _keep(response: "Response", wall: "Scene", out: Path) -> None:
-    """Write a response of a wall as a table, and draw both."""
+    """Write a response of a wall as a table, draw both, and vouch for them."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.response import response_figure
 
@@ -88,3 +90,4 @@ def _keep(response: "Response", wall: "Scene", out: Path) -> None:
     rows = [[float(x) for x in row] for row in zip(*columns.values(), strict=True)]
     write_atomically(out / series, csv_lines([list(columns), *rows]).encode())
     write_atomically(out / chart, to_png(response_figure(response, wall)))
+    save_response(response.summary(), wall, out)

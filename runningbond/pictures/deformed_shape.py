@@ -121,6 +121,14 @@ class DeformedShape:
         faces = self.placed_faces
         return np.asarray(np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1)))
 
+    @property
+    def parted(self) -> Mask:
+        """Whether the two sides of each joint, drawn where they are, are a block apart, ``(nf,)``: no gap, but space.
+
+        What is drawn farther than it moves is one wall however far that is.
+        """
+        return np.asarray((self.scale == 1.0) & (self.gaps.min(axis=1) > usual_side(self.scene)))
+
     @cached_property
     def drawn_state(self) -> Indices:
         """The state that each joint is drawn in, ``(nf,)``: it sticks where it opens by less than can be seen."""

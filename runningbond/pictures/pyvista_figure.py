@@ -45,15 +45,18 @@ def mechanism_figure(
 
 
 def frame_figure(
-    shape: DeformedShape, outcome: Outcome, painter: Painter, film: tuple[DeformedShape, ...] = ()
+    shape: DeformedShape, title: str, model: str, painter: Painter, film: tuple[DeformedShape, ...] = ()
 ) -> "Figure":
-    """Figure of one moment of a run; with room for all moments of a film, and the key to them, if it is one of them."""
+    """Figure of one moment of a model's run on a wall.
+
+    It has room for all moments of a film, and the key to them, if it is one of them.
+    """
     film = film or (shape,)
-    load = f"{outcome.model}: {load_text(shape.scene, shape.multiplier)}"
+    load = f"{model}: {load_text(shape.scene, shape.multiplier)}"
     load += "" if shape.time is None else f", t = {shape.time:.3f} s"
     states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]
     key = [*colour_key(states, shape.colouring, crushes=any(len(one.crosses) for one in film)), *held_key(shape.scene)]
-    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [scale_note(shape)], key), film)
+    return _figure(shape, painter, Caption(wall_title(title), load, [scale_note(shape)], key), film)
 
 
 def _figure(shape: DeformedShape, painter: Painter, caption: Caption, film: tuple[DeformedShape, ...]) -> "Figure":

@@ -101,11 +101,13 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
     plotter.add_mesh(edges, color=EDGE, **_thin(0.8 * width, strength), **flat)
 
     for level, (state, colour) in enumerate(STATE_COLOURS.items()):
-        corners = shape.placed_faces[shape.drawn_state == state].reshape(-1, 2)
-        if len(corners):
-            gaps = _polygons(corners, np.arange(0, len(corners) + 1, 4), 2.0 + level)
-            faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)
+        own = shape.drawn_state == state
+        corners, between = (shape.placed_faces[which].reshape(-1, 2) for which in (own, own & ~shape.parted))
+        if len(between):
+            gaps = _polygons(between, np.arange(0, len(between) + 1, 4), 2.0 + level)
             plotter.add_mesh(gaps, color=tint(state), **flat)
+        if len(corners):
+            faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)
             thin = _thin(WIDTHS[state] * width * strength, max(strength, FAINTEST))
             plotter.add_mesh(faces, color=colour, **thin, **flat)
     if len(shape.crosses):

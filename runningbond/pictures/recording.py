@@ -21,7 +21,7 @@ from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import Outcome
 from runningbond.results.mechanism import carried, rigid_jumps, rotated, turned, turned_frames
 from runningbond.results.reactions import AT_REST
-from runningbond.results.store import RECORD
+from runningbond.results.store import RECORD, RESPONSE_RECORD
 from runningbond.scene import Array, Scene
 
 FALL_FRAMES = 12
@@ -63,7 +63,8 @@ class SeriesRecorder:
         if self._error is None:
             try:
                 if self._folder and not self._is_begun:  # an outcome that is there is of another run
-                    (self._folder / RECORD).unlink(missing_ok=True)
+                    for name in (RECORD, RESPONSE_RECORD):
+                        (self._folder / name).unlink(missing_ok=True)
                 self._is_begun = True
                 self._series.add(frame)
             except (OSError, VtkError) as error:

@@ -11,8 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from runningbond.results import Outcome
-from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
+from runningbond.results.store import (
+    StoreError,
+    holds_response,
+    load_outcome,
+    load_response_summary,
+    load_scene,
+    write_atomically,
+)
 from runningbond.scene import Indices, Scene
 
 from .captions import to_png, to_svg
@@ -48,6 +54,8 @@ PICTURES = (*DRAWN, "rendering.png", "last-moment.png", "film.gif")
 
 def draw_folder(folder: Path) -> list[Path]:
     """Draw the mechanism of a folder flat, ``mechanism.svg`` and ``mechanism.png``, if it has one; the files."""
+    if holds_response(folder):
+        return []
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
     if not has_mechanism(scene, outcome):
         return []
@@ -60,37 +68,43 @@ def draw_folder(folder: Path) -> list[Path]:
 def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
     """Paint what a folder has to show: its mechanism, and of its time series the last moment and a film.
 
-    It gives the files that it wrote: ``rendering.png``, ``last-moment.png`` and ``film.gif``.
+    A response has no mechanism, and its last moment is in its chart. It gives the files that it wrote:
+    ``rendering.png``, ``last-moment.png`` and ``film.gif``.
 
     Raises
     ------
     StoreError
-        If the folder holds no outcome that can be trusted, or not its scene, or a damaged time series.
+        If the folder holds no outcome or response that can be trusted, or not its scene, or a damaged time series.
     """
-    outcome, scene = load_outcome(folder)[0], load_scene(folder)
-    written = []
+    scene, written = load_scene(folder), list[Path]()
     with closing(Painter()) as painter:
+        if holds_response(folder):
+            said = load_response_summary(folder)
+            return _render_series(folder, scene, said["scene"], said["model"], colouring, painter)
+        outcome = load_outcome(folder)[0]
         if has_mechanism(scene, outcome):
             figure = mechanism_figure(scene, outcome, painter, colouring)
             write_atomically(folder / "rendering.png", to_png(figure))
             written.append(folder / "rendering.png")
-        return written + _render_series(folder, scene, outcome, colouring, painter)
+        return written + _render_series(folder, scene, outcome.scene, outcome.model, colouring, painter)
 
 
-def _render_series(folder: Path, scene: Scene, outcome: Outcome, colouring: Colouring, painter: Painter) -> list[Path]:
+def _render_series(
+    folder: Path, scene: Scene, title: str, model: str, colouring: Colouring, painter: Painter
+) -> list[Path]:
     """Draw the moments of a folder, those of a film from one point of view and to one scale: that of the farthest."""
     shapes = _shapes(folder, scene, colouring)
     if not shapes:
         return []
     last, written = shapes[-1], []
     if len({shape.multiplier for shape in shapes}) > 1:  # under one load, it is the mechanism once more
-        write_atomically(folder / "last-moment.png", to_png(frame_figure(last, outcome, painter)))
+        write_atomically(folder / "last-moment.png", to_png(frame_figure(last, title, model, painter)))
         written.append(folder / "last-moment.png")
     if len(shapes) > 1:
         farthest = max(farthest_motion(shape.displacement) for shape in shapes)
         scale = series_scale(last.scene.size, farthest)
         shapes = [replace(shape, scale=scale) for shape in shapes]
-        figures = (frame_figure(shape, outcome, painter, tuple(shapes)) for shape in shapes)
+        figures = (frame_figure(shape, title, model, painter, tuple(shapes)) for shape in shapes)
         write_atomically(folder / "film.gif", _film(to_png(figure, FILM_DPI) for figure in figures))
         written.append(folder / "film.gif")
     return written
@@ -111,9 +125,12 @@ def _shapes(folder: Path, scene: Scene, colouring: Colouring) -> list[DeformedSh
 def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
     """Show a folder's mechanism, its last moment or its undeformed wall in a window, until that is closed."""
     pv = import_pyvista("Plotter")
-    outcome, scene = load_outcome(folder)[0], load_scene(folder)
-    shape = mechanism_shape(scene, outcome) or [undeformed_shape(scene), *_shapes(folder, scene, colouring)][-1]
-    plotter: Any = pv.Plotter(title=f"{outcome.scene}: {outcome.model}")
+    scene = load_scene(folder)
+    outcome = None if holds_response(folder) else load_outcome(folder)[0]
+    shape = outcome and mechanism_shape(scene, outcome)
+    shape = shape or [undeformed_shape(scene), *_shapes(folder, scene, colouring)][-1]
+    said = load_response_summary(folder) if outcome is None else outcome.summary()
+    plotter: Any = pv.Plotter(title=f"{said['scene']}: {said['model']}")
     plotter.set_background("white")
     fill_plotter(plotter, replace(shape, colouring=colouring), 1.5)
     look_at(plotter, shape.extent)

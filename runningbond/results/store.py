@@ -1,7 +1,7 @@
-"""Outcomes on disk: written completely or not at all, and read only if nothing is missing.
+"""Outcomes and responses on disk: written completely or not at all, and read only if nothing is missing.
 
-A result folder holds ``outcome.json`` and the arrays it names. The arrays are written first, under a name
-that carries their digest; the JSON file is moved into place last, and only what it vouches for is read.
+A result folder holds ``outcome.json`` or ``response.json`` and the arrays it names. The arrays are written first, under
+a name that carries their digest; the JSON file is moved into place last, and only what it vouches for is read.
 """
 
 import errno
@@ -24,7 +24,7 @@ from runningbond.scene.folder_lock import locked
 from .outcome import ARRAYS, Outcome
 from .scene_arrays import SCENE_KEY, scene_from_arrays, scene_to_arrays
 
-RECORD = "outcome.json"
+RECORD, RESPONSE_RECORD = "outcome.json", "response.json"
 ARRAY_FILES = f"arrays-{'[0-9a-f]' * 16}.npz"
 """Pattern of the names of the arrays' files: no others are anybody's but the user's."""
 
@@ -84,20 +84,33 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
 
     `load_outcome` gives back its key, what it was computed from, and `load_scene` the wall that it is about.
     """
-    buffer = io.BytesIO()
     columns: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
     if outcome.path_columns:
         columns |= {"path": outcome.path, "path_columns": np.array(outcome.path_columns)}
-    np.savez_compressed(buffer, allow_pickle=False, **columns, **(scene_to_arrays(scene) if scene else {}))
+    columns |= scene_to_arrays(scene) if scene else {}
+    _save(folder, RECORD, {"key": key}, {**outcome.summary(), "fall": outcome.fall}, columns)
+
+
+def save_response(summary: Mapping[str, Any], scene: Scene, folder: Path) -> None:
+    """Write what is said of a response into a folder, made if missing; `load_scene` gives back the wall."""
+    _save(folder, RESPONSE_RECORD, {}, summary, scene_to_arrays(scene))
+
+
+def _save(
+    folder: Path, name: str, key: Mapping[str, str], said: Mapping[str, Any], columns: Mapping[str, NDArray[Any]]
+) -> None:
+    """Write a record of a name, and the arrays that it vouches for."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, allow_pickle=False, **columns)
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
-    scalars = {"key": key, "arrays": arrays, **outcome.summary(), "fall": outcome.fall}
+    scalars = {**key, "arrays": arrays, **said}
     record = {**scalars, "sha256": _seal(scalars, content)}
     make_folder(folder)
     with locked(folder):  # or another writer would take these arrays for stale ones
         write_atomically(folder / arrays, content)
-        write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
-        for stale in (*folder.glob(ARRAY_FILES), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
+        write_atomically(folder / name, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
+        for stale in (*folder.glob(ARRAY_FILES), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{name}.*")):
             if stale.name != arrays:
                 stale.unlink(missing_ok=True)
 
@@ -116,27 +129,38 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
         return Outcome(**scalars, **arrays), str(record["key"])
 
 
+def holds_response(folder: Path) -> bool:
+    """Whether a folder has a response, and not an outcome."""
+    return (folder / RESPONSE_RECORD).is_file() and not (folder / RECORD).is_file()
+
+
+def load_response_summary(folder: Path) -> dict[str, Any]:
+    """Read what is said of a response; StoreError as of `load_outcome`."""
+    with _trusted(folder, RESPONSE_RECORD) as (record, _):
+        return record
+
+
 def load_scene(folder: Path) -> Scene:
-    """Read back the scene of an outcome; StoreError as of `load_outcome`, or where none was stored."""
-    with _trusted(folder) as (_, stored):
+    """Read back the scene of an outcome or a response; StoreError as of `load_outcome`, or where none was stored."""
+    with _trusted(folder, RESPONSE_RECORD if holds_response(folder) else RECORD) as (_, stored):
         if SCENE_KEY not in stored:
             raise StoreError(f"{folder}: holds an outcome without its scene")
         return scene_from_arrays(stored)
 
 
 @contextmanager
-def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
-    """Give the record and the arrays of a folder, if they are what was written."""
+def _trusted(folder: Path, name: str = RECORD) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
+    """Give the record of a name and the arrays of a folder, if they are what was written."""
     try:
         with locked(folder, reading=True):
-            record = json.loads((folder / RECORD).read_bytes())
+            record = json.loads((folder / name).read_bytes())
             content = (folder / record["arrays"]).read_bytes()
         seal = record.pop("sha256")
         if _seal(record, content) != seal:
-            raise StoreError(f"{folder}: is not what {RECORD} vouches for")
+            raise StoreError(f"{folder}: is not what {name} vouches for")
         with np.load(io.BytesIO(content)) as stored:
             yield record, stored
     except OSError as error:
         raise StoreError(f"{folder}: holds no outcome: {error.strerror or error}") from error
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise StoreError(f"{folder / RECORD}: is damaged: {error}") from error
+        raise StoreError(f"{folder / name}: is damaged: {error}") from error

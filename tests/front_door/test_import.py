@@ -178,3 +178,8 @@ def test_the_top_level_of_the_distribution_is_the_package_and_the_four_methods()
     with (ROOT / "pyproject.toml").open("rb") as file:
         packages = find_packages(str(ROOT), **tomllib.load(file)["tool"]["setuptools"]["packages"]["find"])
     assert {package.split(".")[0] for package in packages} == {"runningbond", *METHODS}
+
+
+def test_the_version_is_that_of_the_distribution() -> None:
+    stated = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert rb.__version__ == stated

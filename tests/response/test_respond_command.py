@@ -5,9 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from runningbond.commands.command_line import command
 from runningbond.commands.left_behind import holds_results
+from runningbond.pictures.time_series import frame_files
+from runningbond.results import load_scene
 from tests.walls import content, write_toml
 
 PULSE = {"pulse": {"kind": "sine", "amplitude": 2.0, "period": 0.05}, "quantity": "acceleration"}
@@ -49,7 +52,8 @@ def test_a_folder_holds_what_was_written_there_last_and_nothing_older(ask: Any, 
 
     ran = written("run")
     assert {"outcome.json", "curve.csv", "mechanism.svg", "blocks.pvd", "joints.pvd"} <= ran
-    assert written("respond", **SHAKEN) == {"response.csv", "response.png", "open_run.py", "blocks.pvd", "joints.pvd"}
+    response = {"response.csv", "response.json", "response.png", "arrays"}
+    assert written("respond", **SHAKEN) == {*response, "open_run.py", "blocks.pvd", "joints.pvd"}
     assert written("run") == ran
     assert written("respond", **LEANING) == set()
 
@@ -80,12 +84,28 @@ def test_a_response_says_what_its_model_leaves_out(ask: Any, tmp_path: Path) -> 
     assert told.endswith("; not taken into account: block.young, block.poisson")
 
 
-def test_a_response_is_not_rendered_and_says_where_it_is(
+def test_a_response_is_filmed_from_its_folder_alone(
     ask: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    ask("respond", tmp_path / "out", **SHAKEN)
-    assert command(["render", str(tmp_path / "out")]) == 2
-    assert "holds a response, which is in response.csv and response.png; open_run.py shows" in capsys.readouterr().err
+    """The film has every moment of the series; what of the folder is damaged is named, and nothing is drawn from it."""
+    out = tmp_path / "out"
+    ask("respond", out, **SHAKEN)
+    said = json.loads((out / "response.json").read_text())
+    assert (said["scene"], said["verdict"]) == (load_scene(out).title, "stands")
+    for number in frame_files(out, "blocks")[3:]:
+        (out / "blocks.pvd").write_text(without(number.name, out / "blocks.pvd"))
+    assert command(["render", str(out)]) == 0
+    assert capsys.readouterr().out.split() == [str(out / "film.gif")]
+    with Image.open(out / "film.gif") as film:
+        assert getattr(film, "n_frames", 1) == len(frame_files(out, "blocks")) == 3
+    (out / "response.json").write_text((out / "response.json").read_text().replace("stands", "failed"))
+    assert command(["render", str(out)]) == 2
+    assert f"{out}: is not what response.json vouches for" in capsys.readouterr().err
+
+
+def without(name: str, listing: Path) -> str:
+    """A listing of frames without one of them."""
+    return "\n".join(line for line in listing.read_text().splitlines() if name not in line)
 
 
 def test_a_wall_that_leaves_its_ground_is_filmed(ask: Any, tmp_path: Path) -> None:
