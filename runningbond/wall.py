@@ -160,6 +160,7 @@ class Wall:
         *,
         thickness: float,
         units: str = "m",
+        expand: float | None = None,
         heal: float | None = None,
         **keys: Any,
     ) -> "Wall":
@@ -175,6 +176,9 @@ class Wall:
             Of the wall [m].
         units
             Of the corners: ``"mm"``, ``"cm"``, ``"m"``, ``"in"`` or ``"ft"``.
+        expand
+            Of the widest joint [m], where stones were drawn with the mortar between them: they take it, each to the
+            middle of the joint.
         heal
             Gaps and overlaps up to this are closed [m].
         keys
@@ -189,7 +193,8 @@ class Wall:
         <Wall 'outlines': 2 blocks, 2.3 × 0.4 m>
         """
         given = {"outlines": outlines, "ground": ground, "thickness": thickness}
-        return cls._built("outlines", {**given, "units": None if units == "m" else units, "heal": heal}, keys)
+        given |= {"units": None if units == "m" else units}
+        return cls._built("outlines", {**given, "expand": expand, "heal": heal}, keys)
 
     @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":

@@ -75,15 +75,15 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
     if "drawing" in wall:
         from .drawings import METRES, read_drawing  # only now: healing needs a good part of scipy
 
-        path, heal = folder / wall.text("drawing"), wall.optional_number("heal", ABOVE_ZERO)
-        drawing = read_drawing(path, wall.choice("units", METRES), heal, thickness=thickness)
+        path, units = folder / wall.text("drawing"), wall.choice("units", METRES)
+        drawing = read_drawing(path, units, thickness=thickness, **_corrections(wall))
         return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)
     if "outlines" in wall:
         from .drawings import METRES, listed_outlines
 
         blocks, grounds = wall.outlines("outlines"), wall.outlines("ground") if "ground" in wall else []
-        scale, heal = METRES[wall.choice("units", METRES, "m")], wall.optional_number("heal", ABOVE_ZERO)
-        listed = listed_outlines(blocks, grounds, scale, heal)
+        scale = METRES[wall.choice("units", METRES, "m")]
+        listed = listed_outlines(blocks, grounds, scale, **_corrections(wall))
         return Outlines(listed.blocks, listed.grounds, notes=listed.notes)
     width = wall.number("block_width", ABOVE_ZERO)
     heights = _course_heights(wall)
@@ -107,6 +107,11 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
     if openings:
         polygons, materials = cut_openings(polygons, openings, width)
     return Outlines(polygons, bond=bond, whole_up_to=WHOLE * width, materials=materials)
+
+
+def _corrections(wall: Table) -> dict[str, float | None]:
+    """How outlines are brought together that were not drawn so: widths [m]."""
+    return {"expand": wall.optional_number("expand", ABOVE_ZERO), "heal": wall.optional_number("heal", ABOVE_ZERO)}
 
 
 def _course_heights(wall: Table) -> Array | None:
@@ -135,12 +140,13 @@ def _number_of_courses(wall: Table, bond: Bond | None, heights: Array | None) ->
 def _refuse_mixed_descriptions(wall: Table) -> None:
     """A wall is a drawing, outlines, courses, or a length and height; the keys of two of them do not mix."""
     by_size = ("length", "height", "first_course", "ends")
+    drawn = ("ground", "units", "expand", "heal")
     bonded = ("block_width", "block_height", "course_heights", "opening")
     for description, strangers in (
         ("drawing", ("outlines", "ground", "courses", *by_size, *bonded)),
         ("outlines", ("courses", *by_size, *bonded)),
-        ("courses", ("ground", "units", "heal", *by_size)),
-        ("length", ("ground", "units", "heal")),
+        ("courses", (*drawn, *by_size)),
+        ("length", drawn),
     ):
         if description in wall:
             for key in strangers:

@@ -120,8 +120,8 @@ SCENES: tuple[Schema, ...] = (
     {"joints": {"lime": {"friction": 0.5}}, "assign": [{"joint": "lime", "orientation": "head"}]},
     {"load": {"gravity": 9.81, "history": PULSE}},
     {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # there is no such file, nor
-    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "heal": 0.001}},  # such a drawing,
-    {"wall": {"thickness": 0.2, "outlines": [STONE], "ground": [SOIL], "units": "m", "heal": 0.001}},
+    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "expand": 0.01, "heal": 0.001}},  # such,
+    {"wall": {"thickness": 0.2, "outlines": [STONE], "ground": [SOIL], "units": "m", "expand": 0.01, "heal": 0.001}},
     {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # and layers without one
 )
 """What is read: tables in place of those of `PLAIN`."""

@@ -18,6 +18,7 @@ from ..ranges import one_of
 from .compas import read_compas
 from .curves import ROUNDING, Arc, Chords
 from .dxf import KEY, Drawn, ModelSpace, read_dxf
+from .expanding import expand as expanded
 from .healing import heal as healed
 from .healing import missed_joints
 from .loops import join
@@ -65,7 +66,14 @@ class Drawing:
     notes: tuple[str, ...]
 
 
-def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness: float | None = None) -> Drawing:
+def read_drawing(
+    path: Path,
+    units: str,
+    *,
+    expand: float | None = None,
+    heal: float | None = None,
+    thickness: float | None = None,
+) -> Drawing:
     """Read a DXF drawing or, where the file's name ends in .json, a COMPAS assembly.
 
     The ground is what lies on a layer of `GROUND_LAYERS` or, where there is none, the outline whose corners lie lowest
@@ -75,8 +83,10 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
     ----------
     units
         A key of `METRES`.
+    expand
+        Stones are expanded to the middle of joints full of mortar up to this width [m]; None leaves them as they are.
     heal
-        Gaps and overlaps up to this are closed [m]; None leaves all as they are.
+        Gaps and overlaps up to this are closed, then [m]; None leaves all as they are.
     thickness
         The wall's [m], which tells from which side an assembly is seen that could be seen from several.
 
@@ -108,20 +118,32 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
         notes += more
     if not blocks:
         raise SceneError(KEY, "is an assembly of supports; it needs at least one block", str(path))
-    return _healed(Drawing(blocks, tuple(layers), grounds, tuple(notes)), heal)
+    return _together(Drawing(blocks, tuple(layers), grounds, tuple(notes)), expand, heal)
 
 
-def listed_outlines(blocks: Sequence[Corners], grounds: Sequence[Corners], scale: float, heal: float | None) -> Drawing:
-    """What a scene file lists, in units of `scale` [m], cleaned and healed as a drawing is."""
+def listed_outlines(
+    blocks: Sequence[Corners],
+    grounds: Sequence[Corners],
+    scale: float,
+    *,
+    expand: float | None = None,
+    heal: float | None = None,
+) -> Drawing:
+    """What a scene file lists, in units of `scale` [m], cleaned, expanded and healed as a drawing is."""
     outlines = [np.array(corners) * scale for corners in (*blocks, *grounds)]
     names = [f"wall.{key}[{k}]" for key, of in (("outlines", blocks), ("ground", grounds)) for k in range(len(of))]
     cleaned, spikes = _cleaned(outlines, names)
-    return _healed(Drawing(cleaned[: len(blocks)], (), cleaned[len(blocks) :], (spikes,) if spikes else ()), heal)
+    drawing = Drawing(cleaned[: len(blocks)], (), cleaned[len(blocks) :], (spikes,) if spikes else ())
+    return _together(drawing, expand, heal)
 
 
-def _healed(drawing: Drawing, heal: float | None) -> Drawing:
-    """A drawing whose gaps and overlaps up to a width [m] are closed, and what there is to say of those left."""
-    outlines, count, notes = [*drawing.blocks, *drawing.grounds], len(drawing.blocks), drawing.notes
+def _together(drawing: Drawing, expand: float | None, heal: float | None) -> Drawing:
+    """A drawing whose stones are brought together, and what there is to say of gaps that are left."""
+    blocks, count, notes = drawing.blocks, len(drawing.blocks), drawing.notes
+    if expand is not None:
+        blocks, note = expanded(blocks, drawing.grounds, expand)
+        blocks, notes = _cleaned(blocks, ["wall.expand"] * count)[0], (*notes, note)
+    outlines = [*blocks, *drawing.grounds]
     if heal is not None:
         outlines, note = healed(outlines, heal)
         notes = (*notes, note) if note else notes

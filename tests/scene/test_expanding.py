@@ -1,0 +1,143 @@
+"""Stones that were drawn with the mortar between them take it, each to the middle of the joint."""
+
+import itertools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import runningbond as rb
+from runningbond.scene import Array, SceneError
+from runningbond.scene.drawings.expanding import expand
+from tests.scene.drafting import closed, dxf
+from tests.walls import content
+
+SOLID: dict[str, Any] = {"thickness": 0.25, "density": 1800.0, "friction": 0.6}
+MORTAR = 0.01
+
+
+def box(left: float, low: float, right: float, high: float) -> Array:
+    return np.array([(left, low), (right, low), (right, high), (left, high)])
+
+
+def bricks(mortar: float, courses: int = 4) -> list[Array]:
+    """Three 250 × 70 mm bricks a course, mortar and all, of which half a joint's width is left away all around."""
+    half = mortar / 2
+    corners = [(0.25 * n + 0.125 * (k % 2), 0.07 * k) for k in range(courses) for n in range(3)]
+    return [box(x + half, y + half, x + 0.25 - half, y + 0.07 - half) for x, y in corners]
+
+
+def crooked(seed: int, courses: int = 4) -> list[Array]:
+    """Three or four stones a course between crooked beds, their head joints aslant and nowhere one above the other."""
+    random, nodes = np.random.default_rng(seed), 0.3 * np.arange(5)
+    beds = [0.25 * k + random.uniform(-0.05, 0.05, 5) * (k > 0) for k in range(courses + 1)]
+    stones = []
+    for k, (low, high) in enumerate(itertools.pairwise(beds)):
+        inner = (np.arange(0.3, 1.2, 0.3) - 0.15 * (k % 2)) + random.uniform(-0.04, 0.04, (2, 3))
+        heads = np.column_stack([(0.0, 0.0), inner, (1.2, 1.2)])
+        for (left, left_up), (right, right_up) in zip(heads.T[:-1], heads.T[1:], strict=True):
+            under, over = (
+                np.sort([a, *nodes[(nodes > a) & (nodes < b)], b]) for a, b in ((left, right), (left_up, right_up))
+            )
+            bottom, top = (np.column_stack([x, np.interp(x, nodes, y)]) for x, y in ((under, low), (over, high)))
+            stones.append(np.vstack([bottom, top[::-1]]))
+    return stones
+
+
+def shrunk(stones: list[Array], by: float) -> list[Array]:
+    polygons = shapely.buffer([shapely.Polygon(stone) for stone in stones], -by, join_style="mitre")
+    return [np.array(shapely.geometry.polygon.orient(polygon).exterior.coords)[:-1] for polygon in polygons]
+
+
+def test_bricks_in_mortar_are_the_wall_of_bricks_with_their_share_of_it() -> None:
+    """As many joints, and the load of whole bricks but for the half joints that are missing around the wall."""
+    wall = rb.Wall.outlines(bricks(MORTAR), expand=0.012, **SOLID)
+    whole = rb.Wall.outlines(bricks(0.0), **SOLID)
+    assert "expand: stones take the mortar between them, 0.0097 m wide on average" in wall.scene.notes
+    assert len(wall.scene.joints) == len(whole.scene.joints)
+    assert wall.run("limit").multiplier == pytest.approx(whole.run("limit").multiplier, rel=0.02)
+    along = np.abs(np.diff(wall.scene.joints.ends, axis=1)[:, 0])
+    slope = along[:, 1] / along[:, 0].clip(1e-9)
+    assert slope[along[:, 0] > along[:, 1]].max() < 1e-3  # nothing to climb over at the ends of head joints
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 10**6), st.sampled_from([0.005, 0.01, 0.02]), st.floats(1.2, 2.0), st.booleans())
+def test_stones_share_all_that_is_between_them(seed: int, mortar: float, more: float, on_ground: bool) -> None:
+    """They hold what was drawn, lie beside each other, and come back to where they were before mortar was left away."""
+    true = crooked(seed)
+    drawn, ground = shrunk(true, mortar / 2), [box(-1.0, -0.5, 2.2, 0.0)] if on_ground else []
+    found = [shapely.Polygon(outline) for outline in expand(drawn, ground, more * mortar)[0]]
+    assert all(polygon.is_valid for polygon in found)
+    together = shapely.union_all(found)
+    assert sum(polygon.area for polygon in found) == pytest.approx(together.area, rel=1e-9)
+    assert together.geom_type == "Polygon"
+    assert not together.interiors
+    for polygon, stone, was in zip(found, drawn, true, strict=True):
+        assert shapely.Polygon(stone).difference(polygon.buffer(0.15 * more * mortar)).area < 1e-9
+        assert polygon.difference(shapely.Polygon(was).buffer(more * mortar)).area < 1e-9
+    if on_ground:
+        assert together.bounds[1] == 0.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_wall_in_mortar_bears_what_it_does_without(seed: int) -> None:
+    """Half a joint's width is two hundredths of a stone."""
+    true = crooked(seed)
+    wall = rb.Wall.outlines(shrunk(true, MORTAR / 2), [box(-1.0, -0.5, 2.2, 0.0)], expand=0.015, **SOLID)
+    load = rb.Wall.outlines(true, [box(-1.0, -0.5, 2.2, 0.0)], **SOLID).run("limit").multiplier
+    assert wall.run("limit").multiplier == pytest.approx(load, rel=0.03)
+
+
+@pytest.mark.parametrize(("turn", "offset"), [(0.3, 0.0), (2.0, 5e5)])
+def test_stones_expand_alike_wherever_they_are(turn: float, offset: float) -> None:
+    drawn = shrunk(crooked(3), MORTAR / 2)
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    here = expand(drawn, [], 0.015)[0]
+    there = expand([stone @ rotation.T + offset for stone in drawn], [], 0.015)[0]
+    for one, other in zip(here, there, strict=True):
+        back = shapely.Polygon((other - offset) @ rotation)
+        assert shapely.Polygon(one).symmetric_difference(back).area < 0.02 * MORTAR * back.length
+
+
+def test_what_stones_share_as_drawn_is_shared_like_mortar() -> None:
+    """Two boxes that overlap by 4 mm part midway, as two do that are 4 mm apart."""
+    for gap in (-0.004, 0.004):
+        left, right = expand([box(0, 0, 0.2, 0.1), box(0.2 + gap, 0, 0.4, 0.1)], [], 0.01)[0]
+        assert left[:, 0].max() == pytest.approx(0.2 + gap / 2, abs=2e-4)
+        assert right[:, 0].min() == pytest.approx(0.2 + gap / 2, abs=2e-4)
+
+
+def test_what_is_wider_than_a_joint_stays_open() -> None:
+    outlines, note = expand([box(0, 0, 0.2, 0.1), box(0.25, 0, 0.4, 0.1)], [], 0.02)
+    assert [shapely.Polygon(outline).area for outline in outlines] == pytest.approx([0.02, 0.015])
+    assert note == "expand: there is no mortar between stones"
+
+
+def test_drawings_are_expanded_too(tmp_path: Path) -> None:
+    """In units of their own, and then healed; the ground of a drawing stays where it is."""
+    dxf(tmp_path / "wall.dxf", closed([[tuple(1000 * corner) for corner in brick] for brick in bricks(MORTAR)]))
+    tables = {name: table for name, table in content().items() if name != "wall"}
+    keys = {"drawing": "wall.dxf", "units": "mm", "thickness": 0.25, "expand": 0.012}
+    wall = rb.Wall({**tables, "wall": keys}, tmp_path)
+    listed = rb.Wall.outlines(bricks(MORTAR), expand=0.012, **SOLID)
+    assert len(wall.scene.blocks) == len(listed.scene.blocks)
+    assert any(note.startswith("expand:") for note in wall.scene.notes)
+
+
+def test_joints_as_wide_as_stones_are_refused() -> None:
+    stones = [*bricks(MORTAR), box(0.0, 0.3, 0.75, 0.308)]
+    what = (
+        r"wall.expand = 0.02: must be at most the smallest block's smaller side, 0.008: that of block 12 at \(0.375, "
+    )
+    with pytest.raises(SceneError, match=what):
+        rb.Wall.outlines(stones, expand=0.02, **SOLID)
+    with pytest.raises(SceneError, match=r"wall.expand = 0.0: must be a number above 0"):
+        rb.Wall.outlines(stones, expand=0.0, **SOLID)
+    size: dict[str, Any] = {"length": 1.0, "height": 0.5, "block_width": 0.25, "block_height": 0.1}
+    with pytest.raises(SceneError, match=r"wall.expand: does not go with wall.length; describe the wall in one way"):
+        rb.Wall.running_bond(**size, **SOLID, wall={"expand": 0.01})
