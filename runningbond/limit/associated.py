@@ -92,7 +92,8 @@ class LimitState:
         - ``residual``: largest unbalanced force or moment, relative to the largest force.
         - ``violation``: largest distance of a point's forces from its cone of strength, or of a tie's pull from its
           range, relative to the largest force.
-        - ``penetration``: largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion.
+        - ``penetration``: largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion;
+          by its slip where tan φ is above 1, or rounding were as many times as large.
         - ``gap``: distance between static and kinematic multiplier, relative to the larger of them and 1.
         - ``complementarity``: power of the forces short of the dissipation, by points and ties, relative.
         """
@@ -111,7 +112,7 @@ class LimitState:
         spent = normal * opening + tangential * slip
         longer = system.elongation(motion)
         held_back = system.tie_yield * longer.clip(min=0.0) - forces.tie * longer
-        closing = strength.friction * np.abs(slip) - opening
+        closing = (strength.friction * np.abs(slip) - opening) / np.maximum(1.0, strength.friction)
         if system.crushing is not None:
             first, second = system.crushing.ends
             spent[first] += spent[second]

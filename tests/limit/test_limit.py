@@ -193,6 +193,16 @@ def test_a_couplet_topples_about_whichever_corner_gives_way_first(
     assert multiplier(scene) == pytest.approx(min(friction, upper, both), rel=1e-7)
 
 
+@pytest.mark.parametrize("friction", [0.6, 1e3, 1e6])
+def test_dry_joints_of_a_row_without_weight_bear_nothing_whatever_their_friction(friction: float) -> None:
+    """Nothing presses on them. With tan φ of a million, rounding of slips was taken for blocks in one another."""
+    push = {"kind": "point", "at": [0.0, 0.01], "force": [1.0, 0.0]}
+    row = {"wall__length": 2.0, "wall__height": 0.02, "wall__block_width": 1.0, "wall__block_height": 0.02}
+    scene = panel(**row, wall__first_course="half", joint__friction=friction, load__live=push, load__gravity=0.0)
+    outcome = limit(scene)
+    assert (outcome.status, outcome.lower, outcome.upper) == ("collapse", 0.0, 0.0)
+
+
 @given(height=st.floats(0.1, 3), friction=st.floats(0.02, 2), weight=st.floats(100, 1e6))
 @settings(max_examples=40)
 def test_a_horizontal_point_load_slides_or_topples_a_block(height: float, friction: float, weight: float) -> None:

@@ -39,6 +39,11 @@ REACH = 2.5
 """How far from other stones samples are of use, in largest widths."""
 
 
+GRID = 1e-6
+"""What corners are rounded to, in largest widths: without, GEOS now and then takes shapes whose sides all but coincide
+for ones that share nothing."""
+
+
 def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> tuple[list[Array], str]:
     """Expand stones to the middle of the mortar between them, and to the ground, which stays.
 
@@ -67,32 +72,29 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
     if width > sides.min():
         what = f"must be at most the smallest block's smaller side, {sides.min():.4g}: that of {_name(sides, stones)}"
         raise SceneError(KEY, what, width)
-    ground = shapely.union_all([shapely.Polygon(outline - origin) for outline in grounds])
+    grid = GRID * width
+    ground = shapely.union_all([shapely.Polygon(outline - origin) for outline in grounds], grid_size=grid)
     whole = _mortared(drawn, ground, width)
-    inner = shapely.buffer(_apart(drawn), -SHRUNK * width, join_style="mitre")
+    inner = shapely.buffer(_apart(drawn, grid), -SHRUNK * width, join_style="mitre")
     lines = _straightened(_middle_lines(inner, whole, width), width)
-    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(shapely.union_all([whole.boundary, *lines]))))
+    network = shapely.union_all([whole.boundary, *lines], grid_size=grid)
+    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(network)))
     faces = faces[shapely.contains(whole, shapely.point_on_surface(faces))]
     owner = shapely.STRtree(inner).nearest(shapely.point_on_surface(faces))
     expanded = []
     for k, stone in enumerate(stones):
-        parts = shapely.get_parts(shapely.union_all(faces[owner == k]))
+        parts = shapely.get_parts(shapely.union_all(faces[owner == k], grid_size=grid))
         largest = max(parts, key=lambda part: float(part.area), default=None)
         if largest is None or largest.interiors or largest.area < drawn[k].area / 2:
             raise SceneError(KEY, f"leaves block {k} at {_place(stone, stones)} in pieces; draw it anew", width)
         expanded.append(np.array(shapely.geometry.polygon.orient(largest).exterior.coords)[:-1] + origin)
     around = sum(shapely.Polygon(outline).length for outline in expanded)
-    return expanded, _note(drawn, ground, whole, around)
-
-
-def _note(drawn: Any, ground: Any, whole: Any, around: float) -> str:
-    """Say how wide joints are on average, stones being so long around [m]."""
-    bed = 0.0 if ground.is_empty else ground.boundary.intersection(whole.boundary).length
+    filled = whole.area - shapely.difference(shapely.union_all(drawn, grid_size=grid), ground, grid_size=grid).area
+    bed = shapely.intersection(shapely.boundary(ground), whole.boundary, grid_size=grid).length if grounds else 0.0
     length = (around - whole.length) / 2 + bed
     if length < SHRUNK * np.sqrt(whole.area):
-        return "expand: there is no mortar between stones"
-    filled = whole.area - shapely.union_all(drawn).difference(ground).area
-    return f"expand: stones take the mortar between them, {filled / length:.2g} m wide on average"
+        return expanded, "expand: there is no mortar between stones"
+    return expanded, f"expand: stones take the mortar between them, {filled / length:.2g} m wide on average"
 
 
 def _name(sides: Array, stones: Sequence[Array]) -> str:
@@ -106,24 +108,27 @@ def _place(stone: Array, stones: Sequence[Array]) -> str:
 
 def _mortared(drawn: Any, ground: Any, width: float) -> Any:
     """Stones with the mortar between them and on the ground: all gaps up to a width, and pockets twice as wide."""
-    drawn = shapely.union_all([*drawn, ground])
+    grid = GRID * width
+    drawn = shapely.union_all([*drawn, ground], grid_size=grid)
     grown = shapely.buffer(drawn, width / 2, join_style="mitre")
-    closed = shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), drawn)
+    closed = shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), drawn, grid_size=grid)
     parts = []
     for part in shapely.get_parts(closed):
         holes = [ring for ring in part.interiors if not shapely.Polygon(ring).buffer(-width).is_empty]
         parts.append(shapely.Polygon(part.exterior, holes))
-    return shapely.union_all(parts).difference(ground)
+    return shapely.difference(shapely.union_all(parts, grid_size=grid), ground, grid_size=grid)
 
 
-def _apart(drawn: Any) -> Any:
+def _apart(drawn: Any, grid: float) -> Any:
     """Stones without what they share with others, which is between them as mortar is."""
     one, other = shapely.STRtree(drawn).query(drawn, predicate="intersects")
     shared: dict[int, list[Any]] = defaultdict(list)
     for a, b in zip(one, other, strict=True):
         if a != b:
-            shared[a].append(shapely.intersection(drawn[a], drawn[b]))
-    return np.array([stone.difference(shapely.union_all(shared[k])) for k, stone in enumerate(drawn)])
+            shared[a].append(shapely.intersection(drawn[a], drawn[b], grid_size=grid))
+    return np.array(
+        [shapely.difference(stone, shapely.union_all(shared[k]), grid_size=grid) for k, stone in enumerate(drawn)]
+    )
 
 
 def _middle_lines(inner: Any, whole: Any, width: float) -> list[Any]:
