@@ -1,6 +1,6 @@
 """Stones that were drawn with the mortar between them, expanded to the middle of the joints.
 
-That is what simplified micro-models ask for (Lourenço 1996): mortar becomes a part of the stones, and a joint a line
+That is what simplified micro-models ask for (lourenco1997): mortar becomes a part of the stones, and a joint a line
 without thickness. Its line is that of points as far from one stone as from another.
 """
 
