@@ -56,7 +56,7 @@ class Supports:
     def __init__(self, scene: Scene, points: JointPoints, owner: Indices | None = None) -> None:
         sides = points.block if owner is None else owner[points.block]
         touched = np.isin(np.arange(len(scene.blocks)), [*sides.ravel(), *scene.ties.block.ravel()])
-        self._pins = scene.pins + scene.late_pins
+        self._pins = scene.pins  # what is held later as well is held from the first, at the same point
         self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), self._pins.block)
         number = np.full(len(scene.blocks), -1)
         number[self.block] = np.arange(len(self.block))

@@ -155,7 +155,7 @@ class History(Action):
 
     def check(self, scene: "Scene", key: str) -> None:
         """Refuse what is not followed through time: walls on pins, and beams that are driven or held."""
-        if len(scene.pins) or len(scene.late_pins):
+        if len(scene.pins):  # of a beam that is held later as well, one from the first
             name = "support.kind" if scene.beam is None else "beam.condition"
             raise SceneError(
                 name, "does not go with load.history, which moves a wall on its ground that is free on top"

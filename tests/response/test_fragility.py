@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.stats import norm
+from scipy.stats import t as student
 
 import runningbond as rb
 from runningbond.fragilities import fitted, interval_of_median
@@ -52,6 +53,8 @@ def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
     found = rb.Fragility(np.array([0.5]), np.zeros(0), 0.5, 0.4, (0.4, 0.6), runs, 0)
     probability = found.probability(np.array([0.0, 0.5 * np.exp(-0.4), 0.5, np.inf]))
     assert probability == pytest.approx([0.0, norm.cdf(-1.0), 0.5, 1.0], abs=1e-12)
+    certain = replace(found, dispersion=0.0).probability(np.array([0.49, 0.51]))
+    assert certain.tolist() == [0.0, 1.0]
     assert "0 left out>" in repr(found)
     assert "1 left out (`runs` says why)>" in repr(replace(found, left_out=1))
     for bad in (-1.0, np.array([0.1, np.nan]), "a"):
@@ -93,6 +96,34 @@ def test_the_interval_of_few_records_holds_the_median_as_often_as_it_says(n: int
     assert held / 400 == pytest.approx(0.9, abs=3 * np.sqrt(0.9 * 0.1 / 400))
 
 
+@pytest.mark.parametrize("n", [6, 12])
+def test_the_interval_of_log_normal_levels_is_students(n: int) -> None:
+    """As wide as exp(± t s / √n) at 90 %, t of n − 1 degrees of freedom."""
+    logs = np.random.default_rng(3).standard_normal(n)
+    low, high = interval_of_median(np.exp(logs), np.zeros(n, dtype=bool), seed=1, draws=20_000)
+    exact = student.ppf(0.95, n - 1) * logs.std(ddof=1) / np.sqrt(n)
+    assert np.log(high / low) == pytest.approx(2 * exact, rel=0.02)
+
+
+def test_the_interval_is_as_wide_as_falls_are_few_and_not_records(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of eight falls, and four records whose wall stands at next to nothing, which say nothing of its median."""
+
+    def of_falls(level: Any, stands: Any) -> tuple[float, float]:
+        logs = np.log(level[~stands])
+        return (float(np.exp(logs.mean())), float(logs.std())) if len(logs) > 1 else (np.inf, 0.0)
+
+    logs, stands = np.random.default_rng(3).standard_normal(8), np.arange(12) >= 8
+    levels = np.append(np.exp(logs), np.full(4, 1e-6))
+    assert fitted(levels, stands) == pytest.approx(of_falls(levels, stands), rel=1e-3)
+    monkeypatch.setattr("runningbond.fragilities.fitted", of_falls)  # the same, and quick
+    few, many = (interval_of_median(levels[:n], stands[:n], seed=2, draws=20_000) for n in (8, 12))
+    assert np.log(many[1] / many[0]) > np.log(few[1] / few[0])
+
+
+def test_of_one_fall_no_median_is_known() -> None:
+    assert fitted(np.array([0.2, 0.6, 0.6]), np.array([False, True, True])) == (np.inf, 0.0)
+
+
 def test_an_interval_without_an_upper_end_stays_so() -> None:
     levels = np.array([0.2, 0.3, 0.6, 0.6, 0.6])
     low, high = interval_of_median(levels, levels > 0.5, seed=0, draws=30)
@@ -102,16 +133,19 @@ def test_an_interval_without_an_upper_end_stays_so() -> None:
 def test_a_fragility_takes_records_that_never_bring_the_wall_down(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """By λ: two falls, two that stand to the last scale tried, one that broke and one that fell at every scale."""
+    """By λ: two falls, two that stand to the last scale tried, one that broke and one that fell at every scale.
+
+    Nor is anything known of one that neither rests nor falls between two scales, and of one that rests at none.
+    """
     rows: dict[str, list[Any]] = {
-        "status": ["collapse", "undecided", "collapse", "undecided", "failed", "undecided"],
-        "multiplier": [0.5, None, 1.0, None, None, None],
-        "lower": [0.49, 2.0, 0.99, 3.0, 1.0, None],
-        "upper": [0.51, None, 1.01, None, 2.0, 0.1],
+        "status": ["collapse", "undecided", "collapse", "undecided", "failed", *["undecided"] * 3],
+        "multiplier": [0.5, None, 1.0, *[None] * 5],
+        "lower": [0.49, 2.0, 0.99, 3.0, 1.0, None, 1.0, None],
+        "upper": [0.51, None, 1.01, None, 2.0, 0.1, 2.0, None],
     }
     monkeypatch.setattr("runningbond.fragilities.sweep", lambda *_, **__: table(rows))
-    for name in (records := [str(tmp_path / f"{k}.csv") for k in range(6)]):
-        Path(name).write_text("time,x\n0,0\n0.5,0.25\n1,0\n")
+    for name in (records := [str(tmp_path / f"{k}.csv") for k in range(8)]):
+        Path(name).write_text("time,x,y\n0,0,0\n0.5,0.15,-0.2\n1,0,0\n")  # 0.25 g aslant
     size: dict[str, Any] = {
         "block_width": 0.5,
         "block_height": 1.0,
@@ -123,6 +157,6 @@ def test_a_fragility_takes_records_that_never_bring_the_wall_down(
     found = rb.fragility(wall, records, "dem-dynamic", draws=20)
     assert found.intensity == pytest.approx([0.125, 0.25])
     assert found.stood == pytest.approx([0.5, 0.75])
-    assert found.left_out == 2
+    assert found.left_out == 4
     assert found.median > 0.125 * np.sqrt(2)
     assert found.interval[0] <= found.median <= found.interval[1]

@@ -147,6 +147,11 @@ def test_a_held_block_that_ties_alone_touch_bears_their_pull_about_the_middle_of
     assert named["block 1 moment about (1.5, 0.25) [N m]"] == pytest.approx(0.1 * (pull[0, 0] - pull[1, 0]))
 
 
+def test_a_held_block_that_nothing_touches_is_no_support() -> None:
+    scene = courses([[1, -1, 1], [1]], width=0.6, height=0.4, support__kind="fixed-first-course")
+    assert Supports(scene, wall_points(scene)).block.tolist() == [0]
+
+
 def test_what_falls_holds_its_pins_with_more_than_forces() -> None:
     """The last row of a wall that fell is in motion: what holds a pinned block then is not known."""
     columns = run_model("dem-dynamic", wall("corners"), 0.1).curve_columns()
@@ -168,6 +173,41 @@ def test_a_held_beam_bears_what_its_joints_do_not() -> None:
         f"beam {head}" for head in ("horizontal [N]", "vertical [N]", "moment about (0.24, 0.29) [N m]")
     ]
     assert list(named.values()) == pytest.approx([-6.0, 300 + 50 * 9.81, 0.6])
+    falling = supports.reactions(np.zeros((len(wall_points(scene)), 2)), np.zeros(0), 3.0, at_rest=False)
+    assert [np.isnan(x) for x in falling] == [name.startswith("beam") for name in supports.columns]
+
+
+def test_a_moment_on_a_pinned_block_is_held_by_its_pins() -> None:
+    """Of 2 N m at λ = 1, on a wall whose joints carry nothing."""
+    live = {"kind": "moment", "at": [0.1, 0.03], "moment": 2.0}
+    scene = panel(support__kind="corners", load__live=live)
+    supports, none = Supports(scene, wall_points(scene)), np.zeros((len(wall_points(scene)), 2))
+    without, with_it = (supports.reactions(none, np.zeros(0), load) for load in (0.0, 3.0))
+    assert with_it - without == pytest.approx([0.0, 0.0, -6.0, 0.0, 0.0, 0.0])
+
+
+def test_moments_of_the_ground_are_about_the_middle_of_where_it_is_touched() -> None:
+    """Whatever number of points that is in: joints of 0.4 and 0.2 m have two each."""
+    scene = courses([[1, 0.5]], width=0.4)
+    assert Supports(scene, wall_points(scene)).about == pytest.approx(np.array([[0.3, 0.0]]))
+
+
+@pytest.mark.parametrize("angle", [5.0, 1e-7])
+def test_a_support_that_turns_has_come_free_once_nothing_bears_but_where_it_turns(angle: float) -> None:
+    """The right half of the ground under a block turns about the block's corner, however little."""
+    live = {"kind": "settlement", "box": [[0.2, -9.0], [9.0, 0.1]], "rotation_angle": angle, "about": [0.4, 0.0]}
+    tie = {"from": [0.2, 0.1], "to": [0.3, -0.01], "area": 1e-4, "young": 2e11, "yield": 1e3}
+    scene = courses([[1]], width=0.4, load__live=live, tie=[tie])
+    points = wall_points(scene)
+    supports, at = Supports(scene, points), points.position[:, 0]
+    moves = np.isin(points.block, np.flatnonzero(scene.support_motion.any(axis=1))).any(axis=1)
+    pressed = np.column_stack([np.full(len(at), -50.0), np.zeros(len(at))])
+    free = np.where((~moves | (at > 0.39))[:, None], pressed, 0.0)
+    assert (~moves).any()
+    assert (moves & (at > 0.39)).any()
+    assert supports.have_come_free(free, np.zeros(1))
+    assert not supports.have_come_free(pressed, np.zeros(1))
+    assert not supports.have_come_free(free, np.array([50.0]))  # a taut tie bears as well
 
 
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic"])

@@ -116,6 +116,34 @@ def test_a_ramp_stays_on_whatever_it_is_of() -> None:
     assert of_velocity.velocity(np.array([0.5, 9.0]))[:, 0] == pytest.approx(2.0)
     assert of_velocity.acceleration(0.6)[0] == 0
     assert of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "acceleration"}).acceleration(0.6)[0] == 2
+    in_g = of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "g"})
+    assert in_g.acceleration(0.6)[0] == pytest.approx(2 * STANDARD_GRAVITY)
+
+
+def test_a_record_that_begins_late_is_counted_from_its_first_sample() -> None:
+    """As one that begins at 0, and before it there is no motion; its steps are halved where they are shortest."""
+    time, values = np.array([0.0, 0.1, 0.4, 0.6]), np.array([[1.0, 0.0], [2.0, 0.0], [-1.0, 0.0], [1.0, 0.0]])
+    first, late = History(time, values), History(time + 30.0, values)
+    for moment in (-0.1, 0.0, 0.05, 0.25, 0.7):
+        assert late.acceleration(moment) == pytest.approx(first.acceleration(moment))
+        assert late.velocity(moment) == pytest.approx(first.velocity(moment))
+    assert first.acceleration(-0.1).tolist() == [0.0, 0.0]
+    assert (late.duration, late.resolution) == pytest.approx((0.6, 0.05))
+
+
+@pytest.mark.parametrize("multiplier", [1.5, -1.5])
+def test_the_peak_of_a_motion_is_where_both_of_its_parts_together_are_largest(multiplier: float) -> None:
+    """3 m/s² aside and 4 m/s² down come to 5 m/s²; turned round, λ < 0, to as much."""
+    values = np.array([[0.0, 0.0], [4.5, 0.0], [3.0, -4.0], [0.0, 0.0]])
+    history = History(np.arange(4.0), values)
+    assert history.peak == pytest.approx([3.0, -4.0])
+    assert history.note(multiplier) == f"the ground is accelerated by up to {7.5 / STANDARD_GRAVITY:.4g} g"
+
+
+@pytest.mark.parametrize("kind", ["sine", "ramp"])
+def test_the_mean_of_a_pulse_is_taken_over_a_two_hundredth_of_its_period(kind: str) -> None:
+    """However many samples it is drawn with: of a ramp there are two."""
+    assert of({"pulse": {**SINE, "kind": kind}, "quantity": "acceleration"}).resolution == pytest.approx(0.5 / 200)
 
 
 @pytest.mark.parametrize("part", [";", "\t", " ", " ; "])
@@ -262,6 +290,7 @@ def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
         ({"load__live": {"kind": "lateral"}}, "load.live: does not go with load.history"),
         ({"support__kind": "corners"}, "support.kind: does not go with load.history"),
         ({"beam": {"height": 0.1, "condition": "level"}}, "beam.condition: does not go with load.history"),
+        ({"beam": {"height": 0.1, "condition": "fixed-height"}}, "beam.condition: does not go with load.history"),
         ({"beam": {"height": 0.1, "drive": {"force": [1, 0]}}}, "beam.drive: does not go with load.history"),
     ],
 )

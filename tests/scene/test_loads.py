@@ -31,6 +31,7 @@ from runningbond.scene import (
     PointLoad,
     Scene,
     SceneError,
+    Tilt,
     build_scene,
     scene_from_dict,
 )
@@ -123,6 +124,19 @@ def test_a_lateral_load_has_any_direction(to: Any) -> None:
     assert live_load(scene).reshape(-1, 3)[:, :2] == pytest.approx(9.81 * scene.mass[:, None] * unit)
 
 
+def test_a_block_is_pushed_by_all_of_its_weight_where_that_leans() -> None:
+    scene = panel(load__gravity=[3.0, -4.0])
+    assert live_load(scene).reshape(-1, 3)[:, :2] == pytest.approx(5.0 * scene.mass[:, None] * [1.0, 0.0])
+
+
+def test_ground_that_is_tilted_by_one_in_one_is_by_45_degrees() -> None:
+    """It turns about nothing that leans against the weight, by half a degree or more."""
+    assert Tilt().note(1.0) == "the ground is tilted by 45°"
+    assert Tilt().note(-(3**-0.5)) == "the ground is tilted by -30°"
+    with pytest.raises(SceneError, match="must be across gravity, along the ground; to the right that is"):
+        panel(load__live={"kind": "tilt", "direction": [1.0, 0.01]})
+
+
 def test_a_wall_pushed_to_the_left_is_the_mirror_image_of_one_pushed_to_the_right() -> None:
     right, left = (limit(panel(load__live={"kind": "lateral", "direction": to})).multiplier for to in ("right", "left"))
     assert left == pytest.approx(right, rel=1e-8)
@@ -192,6 +206,35 @@ def test_a_point_beside_the_wall_is_told_the_nearest_place_where_its_load_is_tak
     assert scene.load.live[0].blocks(scene).tolist() == [int(said[1])]  # type: ignore[attr-defined]
 
 
+def test_a_force_where_a_block_stands_on_its_ground_is_all_on_the_block() -> None:
+    """The ground bears none of it, and of two blocks that meet there each has half."""
+    for x, blocks in ((0.12, [0]), (0.24, [0, 1])):
+        forces = panel(load__live={"kind": "point", "at": [x, 0.0], "force": [4.0, -2.0]}).live_forces
+        assert forces.block.tolist() == blocks
+        assert forces.force == pytest.approx(np.tile([4.0, -2.0], (len(blocks), 1)) / len(blocks))
+
+
+@pytest.mark.parametrize(("moment", "x"), [(2.0, 0.24), (-2.0, 0.48)])
+def test_the_arrow_of_a_moment_is_on_the_side_that_it_moves_down(moment: float, x: float) -> None:
+    """On the left of its block where it is counter-clockwise."""
+    scene = panel(load__live={"kind": "moment", "at": [0.3, 0.03], "moment": moment})
+    (arrow,) = scene.load.live[0].arrows(scene)
+    assert arrow.at == pytest.approx([x, 0.06])
+    assert arrow.direction.tolist() == [0.0, -1.0]
+
+
+def test_moments_add_and_are_forces_neither_on_mass_nor_at_points_alone() -> None:
+    """So that λ beside one is no force in newtons, and a wall under one is none that is pushed by its weight."""
+    scene = tower()
+    push = Forces.on(scene, block=[0], at=(0.1, 0.1), force=(0.6, -0.8))
+    two, three = (Forces.on(scene, moment=size) for size in (2.0, 3.0))
+    assert (two + three).resultants(scene)[:, 2].tolist() == [5.0] * len(scene.blocks)
+    assert Forces.on(scene, (1.0, 0.0)).on_mass_alone
+    assert not (two + Forces.on(scene, (1.0, 0.0))).on_mass_alone
+    assert push.at_points_alone
+    assert not (push + two).at_points_alone
+
+
 @pytest.mark.parametrize(
     ("live", "said"),
     [
@@ -237,6 +280,36 @@ def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, f
     run, middle = (high - low) * on, (high + low) / 2 - scene.blocks.centroid[:, 0]
     expected = np.column_stack([20.0 * run, -100.0 * run, -100.0 * run * middle - 20.0 * run * 0.03])
     assert load == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_line_load_bends_a_block_as_it_does_spread_out() -> None:
+    """Its forces have q l³ / 12 about the middle of the line as well: in strains that are even they work as it does."""
+    live = {"kind": "line", "from": [0.38, 0.72], "to": [0.52, 0.72], "force": [0.0, -100.0]}
+    forces = panel(load__live=live).live_forces
+    assert len(np.unique(forces.block)) == 1
+    arm = forces.at[:, 0] - 0.45
+    assert [(forces.force[:, 1] * arm**k).sum() for k in range(3)] == pytest.approx([-14.0, 0.0, -100 * 0.14**3 / 12])
+
+
+def test_a_line_load_is_cut_where_it_meets_the_edges_of_pieces() -> None:
+    """Where it crosses one, and where one ends on it; not where it would beyond its own ends."""
+    scene = courses([[1]], load__live={"kind": "line", "from": [0.1, 0.1], "to": [0.3, 0.1], "force": [0.0, -1e3]})
+    crossing, ending = [[0.2, 0.0], [0.1, 0.4]], [[0.25, 0.1], [0.3, 0.17]]
+    beyond = [[0.35, 0.0], [0.35, 0.17]]
+    forces = scene.load.live[0].forces_by_piece(scene, np.array([crossing, ending, beyond]))
+    lengths = np.array([0.075, 0.075, 0.05])  # from 0.1 to 0.175, where the first one's first quarter ends, to 0.25
+    assert forces.force[:, 1] == pytest.approx(np.repeat(-1e3 * lengths / 2, 2), rel=1e-9)
+    assert forces.at[:, 0].reshape(3, 2).mean(axis=1) == pytest.approx([0.1375, 0.2125, 0.275])
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1.44), (1.2, 0.3)])
+def test_arrows_of_a_line_load_are_spread_along_it_each_on_the_block_beneath(ends: tuple[float, float]) -> None:
+    live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [0.0, -100.0]}
+    scene = panel(load__live=live)
+    arrows = scene.load.live[0].arrows(scene)
+    tips = np.array([arrow.at for arrow in arrows])
+    assert tips[:, 0] == pytest.approx(ends[0] + np.array([1, 3, 5, 7]) / 8 * (ends[1] - ends[0]))
+    assert [arrow.block.tolist() for arrow in arrows] == [scene.blocks.containing(tip).tolist() for tip in tips]
 
 
 @pytest.mark.parametrize(("ends", "on"), [((0.0, 1.44), 1), ((0.12, 0.6), 2), ((0.3, 1.2), 1), ((1.2, 0.3), 1)])
@@ -332,6 +405,19 @@ def test_a_line_load_along_a_joint_presses_on_neither_side() -> None:
         live = {"kind": "line", "from": [0.24, low], "to": [0.24, high], "force": [1e-13, -1000.0]}
         with pytest.raises(SceneError, match="presses on neither alone"):
             limit(panel(load__live=[live]))
+
+
+def test_a_line_load_along_a_slanting_joint_presses_on_neither_side() -> None:
+    """Whichever side rounding of its parts is on."""
+    outlines = [
+        np.array([[0, 0], [0.2, 0], [0.4, 0.3], [0, 0.3]]),
+        np.array([[0.2, 0], [0.7, 0], [0.7, 0.3], [0.4, 0.3]]),
+    ]
+    own = {"thickness": 0.1, "block": BlockMaterial(1800.0), "joint": JointMaterial(0.6)}
+    for size in range(100, 110):
+        line = LineLoad((0.22, 0.03), (0.38, 0.27), (size / 3 * 0.16, size / 3 * 0.24))
+        with pytest.raises(SceneError, match="presses on neither alone"):
+            build_scene("slanting", outlines, load=Load(live=(line,)), **own)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("force", "block"), [(-1e3, 0), (1e3, 1)])

@@ -1,11 +1,13 @@
 """Grounds that are cut by the boxes of settlements."""
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 from runningbond.models import run_model
+from runningbond.results.mechanism import carried
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from tests.walls import panel
 
@@ -93,3 +95,51 @@ def test_ground_that_rises_above_a_box_stays_where_it_is(right: float, tmp_path:
     load = {"gravity": 9.81, "live": live}
     scene = scene_from_dict(tables(thickness=0.2) | {"load": load}, folder=path.parent)
     assert run_model("limit", scene).multiplier == pytest.approx(0.5, rel=1e-9)
+
+
+@pytest.mark.parametrize("about", [None, (0.3, -0.7)])
+def test_ground_turns_about_its_point_as_a_rigid_body(about: tuple[float, float] | None) -> None:
+    """That point, or the middle of the box, goes where the whole is moved to; 1 m to its right goes up by the angle.
+
+    What stays does not turn. The load is read on top of the ground, along the way that it goes there.
+    """
+    by, angle = (0.002, -0.005), 2.0
+    live: dict[str, Any] = {"kind": "settlement", "box": [[0.8, -3.0], [4.0, 0.5]], "by": by, "rotation_angle": angle}
+    live |= {} if about is None else {"about": about}
+    scene = panel(load__live=live)
+    moving = np.flatnonzero(scene.support_motion.any(axis=1))
+    assert len(moving) == 1
+    point, turn = np.array(about or (2.4, -1.25)), math.radians(angle)
+
+    def way(place: Any) -> Any:
+        return carried(scene.blocks, moving, np.array([place]), scene.support_motion)[0]
+
+    assert way(point) == pytest.approx(by, abs=1e-15)
+    assert way(point + [1.0, 0.0]) == pytest.approx([by[0], by[1] + turn], rel=1e-12)
+    assert way(point + [0.0, 1.0]) == pytest.approx([by[0] - turn, by[1]], rel=1e-12)
+    block, at, direction = scene.control_point
+    low, high = scene.blocks.extent(int(moving[0]))
+    assert (block.tolist(), at.tolist()) == (moving.tolist(), pytest.approx([(low[0] + high[0]) / 2, high[1]]))
+    assert direction * np.hypot(*way(at)) == pytest.approx(way(at), rel=1e-12)
+
+
+def test_ground_is_cut_into_what_moves_and_what_stays(tmp_path: Any) -> None:
+    """At both sides of the box and at its top, however shallow that is: no ground is lost, and none is there twice."""
+    ground = [(-1000, -900), (2000, -900), (2000, 0), (800, 0), (800, 400), (600, 400), (600, 0), (-1000, 0)]
+    pier = box_of(100.0, 0.0, 400.0, 300.0)
+    path = dxf(tmp_path / "wall.dxf", closed([pier]), closed([ground], layer="ground"), ground=False)
+    live = {"kind": "settlement", "box": [[0.0, -0.1], [1.5, 0.1]], "by": [0.0, -0.01]}
+    scene = scene_from_dict(tables(thickness=0.2) | {"load": {"gravity": 9.81, "live": live}}, folder=path.parent)
+    moves = scene.support_motion.any(axis=1)
+    assert scene.blocks.area[moves] == pytest.approx([1.5 * 0.9 + 0.2 * 0.1])
+    assert np.sort(scene.blocks.area[scene.fixed & ~moves]) == pytest.approx([0.2 * 0.3, 0.5 * 0.9, 0.9])
+
+
+def test_a_settlement_goes_one_path() -> None:
+    """Its turning points, or amplitudes with cycles; and what it turns about needs a turn."""
+    live = {"kind": "settlement", "box": [[0.8, -3.0], [4.0, 0.5]], "by": [0.0, -0.01]}
+    assert panel(load__live=live | {"amplitudes": [0.5, 1.0]}).settlement.path == (0.5, -0.5, 1.0, -1.0, 0.0)  # type: ignore[union-attr]
+    with pytest.raises(SceneError, match="load.live: must have one of path and amplitudes, not both"):
+        panel(load__live=live | {"amplitudes": [0.5, 1.0], "path": [1.0]})
+    with pytest.raises(SceneError, match="load.live.rotation_angle: is missing; about is the point"):
+        panel(load__live=live | {"about": [1.0, 0.0]})
