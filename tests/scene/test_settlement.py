@@ -66,6 +66,14 @@ def test_a_box_that_ends_below_held_blocks_or_begins_above_them_moves_none(botto
         panel(wall=size, support__kind="fixed-first-course", load__live=live)
 
 
+@pytest.mark.parametrize("top", [0.01, 0.15, 0.3, 1.0])
+def test_a_held_block_moves_however_much_of_its_height_a_box_holds(top: float) -> None:
+    size = {"length": 1.6, "height": 0.6, "block_width": 0.4, "block_height": 0.3, "thickness": 0.1}
+    live = {"kind": "settlement", "box": [[-1.0, -1.0], [0.7, top]], "by": [0.0, -1e-3]}
+    scene = panel(wall=size, support__kind="fixed-first-course", load__live=live)
+    assert np.flatnonzero(scene.support_motion.any(axis=1)).tolist() == [0, 1]
+
+
 @pytest.mark.parametrize("side", [0.65, 0.75, 0.85, 0.95, 1.05])
 def test_a_held_block_that_may_crack_moves_whole_or_stays(side: float) -> None:
     """Its halves move where it would, whole: nothing else may part what is as strong as can be."""
@@ -80,6 +88,20 @@ def test_a_held_block_that_may_crack_moves_whole_or_stays(side: float) -> None:
     assert np.array_equal(pieces, np.flatnonzero(np.isin(cut.part_of, moving)))
     found = [run_model("limit", scene).multiplier for scene in (whole, cut)]
     assert found[0] == pytest.approx(found[1], rel=1e-6)
+
+
+@pytest.mark.parametrize(("side", "moving"), [(0.34, 2), (0.35, 1), (0.43, 1)])
+def test_a_slanting_block_that_may_crack_moves_where_its_centroid_does(side: float, moving: int) -> None:
+    """Sides of 1 m and 0.2 m, 0.3 m apart, have it at x = 31 / 90; that of the larger half counts for more."""
+    outlines = [
+        [[0, 0], [1, 0], [0.2, 0.3], [0, 0.3]],
+        [[1, 0], [1.6, 0], [1.6, 0.3], [1, 0.3]],
+        [[1, 0.3], [1.6, 0.3], [1.6, 0.6], [1, 0.6]],
+    ]
+    live = {"kind": "settlement", "box": [[side, -1.0], [9.0, 0.2]], "by": [0.0, -1e-3]}
+    wall = {"outlines": outlines, "thickness": 0.1}
+    scene = panel(wall=wall, support__kind="fixed-first-course", load__live=live, inner_joint={"friction": 0.6})
+    assert len(np.unique(scene.part_of[scene.support_motion.any(axis=1)])) == moving
 
 
 @pytest.mark.parametrize("right", [-0.5, 0.0, 1.0])

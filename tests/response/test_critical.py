@@ -1,0 +1,126 @@
+"""Searches for the critical scale among responses that are known beforehand."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dem.finite_system import finite_system
+from runningbond.joints.wall_law import with_impacts
+from runningbond.response import Response, critical_scale, follow
+from runningbond.response.critical import BEYOND, MOST, RATIO, START, Search
+from runningbond.response.response import ResponseVerdict
+from runningbond.results import Outcome
+from runningbond.scene.history import STANDARD_GRAVITY
+
+from .walls import block, resting, shaken
+
+PEAK = 3.0  # m/s²
+SCENE = block(0.25, 1.0, shaken("half-sine", PEAK, 0.5))
+UNIT = STANDARD_GRAVITY / PEAK
+
+
+@cache
+def known() -> Response:
+    return follow(resting(SCENE), 0.01)
+
+
+Told = Callable[[float], tuple[ResponseVerdict, float]]
+
+
+@pytest.fixture
+def search(monkeypatch: pytest.MonkeyPatch) -> Callable[[Told], Outcome]:
+    """The outcome of a search among responses of which a verdict is known, and the share of energy that is missed."""
+
+    def found(told: Told, tolerance: float = 0.02) -> Outcome:
+        def at(rest: Any, scale: float, **settings: Any) -> Response:
+            verdict, missed = told(scale)
+            drift = np.array([0.0, -0.1 * scale, 0.02 * scale])
+            bare = replace(known(), time=np.arange(3.0), fallen=np.zeros(3, dtype=np.int64), steps=10)
+            return replace(bare, scale=scale, verdict=verdict, unaccounted=missed, drift=drift)
+
+        monkeypatch.setattr(import_module("runningbond.response.critical"), "follow", at)
+        return critical_scale(SCENE, "dem-dynamic", finite_system(with_impacts(SCENE)), tolerance)
+
+    return found
+
+
+def stands_below(edge: float, missed: float = 0.0) -> Told:
+    return lambda scale: ("stands" if scale < edge else "collapse", missed)
+
+
+@pytest.mark.parametrize("edge", [0.3, 20.0])
+def test_the_bracket_is_as_narrow_as_it_is_asked_for_and_hardly_narrower(
+    edge: float, search: Callable[[Told], Outcome]
+) -> None:
+    """In its own scale; the multiplier is in its middle, and the largest drift of each scale is told, and the last."""
+    outcome = search(stands_below(edge))
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < edge <= outcome.upper
+    assert 0.01 < (outcome.upper - outcome.lower) / outcome.upper <= 0.02
+    assert outcome.multiplier == pytest.approx((outcome.lower + outcome.upper) / 2)
+    scales = outcome.curve[:, 1]
+    assert outcome.curve[:, 0] == pytest.approx(2.0 * 0.1 * scales)  # of a block of 2 m
+    assert outcome.path == pytest.approx(np.column_stack([scales < edge, 0.02 * scales]))
+    assert outcome.steps is not None
+    assert outcome.steps > 10 * len(scales)  # and those until it was at rest
+    assert "it stands again" not in outcome.message
+
+
+def test_scales_are_tried_from_a_twentieth_of_g_on(search: Callable[[Told], Outcome]) -> None:
+    """In steps of a quarter, to twice the first fall and no farther."""
+    scales = search(stands_below(1.0)).curve[:, 1]
+    assert scales[0] == pytest.approx(START * UNIT)
+    grid = scales[0] * RATIO ** np.arange(40)
+    assert scales[scales < 1 / RATIO] == pytest.approx(grid[grid < 1 / RATIO])
+    first = grid[grid >= 1.0].min()
+    assert scales[scales > first] == pytest.approx(grid[(grid > first) & (grid <= BEYOND * first)])
+
+
+def test_a_wall_that_no_scale_brings_down_has_no_upper_one(search: Callable[[Told], Outcome]) -> None:
+    """They go up to fifty times g."""
+    outcome = search(lambda scale: ("stands", 0.0))
+    assert (outcome.status, outcome.upper) == ("undecided", None)
+    assert outcome.lower == outcome.curve[-1, 1]
+    assert MOST * UNIT < outcome.curve[-1, 1] <= MOST * UNIT * RATIO
+    assert outcome.message.startswith("stands at every scale tried, up to ")
+    doubtful = search(lambda scale: ("undecided", 0.0))
+    assert (doubtful.lower, doubtful.upper) == (None, None)
+    assert "falls at no scale tried" in doubtful.message
+    assert "and rests at none" in doubtful.message
+
+
+def test_a_wall_that_falls_at_the_first_scale_is_tried_below_it(search: Callable[[Told], Outcome]) -> None:
+    edge = START * UNIT / 7
+    outcome = search(stands_below(edge))
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < edge <= outcome.upper
+
+
+@pytest.mark.parametrize("end", ["lower", "upper"])
+def test_a_bracket_of_which_either_end_misses_energy_is_not_believed(
+    end: str, search: Callable[[Told], Outcome]
+) -> None:
+    def told(scale: float) -> tuple[ResponseVerdict, float]:
+        falls = scale >= 1.0
+        return "collapse" if falls else "stands", 0.2 if falls == (end == "upper") else 0.0
+
+    outcome = search(told)
+    assert outcome.status == "failed"
+    assert "20.0% of the energy supplied is unaccounted for at λ = " in outcome.message
+
+
+def test_windows_run_from_the_first_scale_at_which_it_stands_again_to_the_last() -> None:
+    """What neither rests nor falls ends one, and what stands below the first fall is none."""
+    verdicts: dict[float, ResponseVerdict] = dict.fromkeys((1.0, 1.1, 1.4, 1.5, 1.6, 1.8, 2.0), "stands")
+    verdicts |= {1.2: "collapse", 1.3: "undecided", 1.7: "undecided", 1.9: "collapse"}
+    tried = {scale: replace(known(), scale=scale, verdict=verdict) for scale, verdict in verdicts.items()}
+    assert Search(lambda scale: tried[scale], tried).windows() == [(1.4, 1.6), (1.8, 1.8), (2.0, 2.0)]
