@@ -107,6 +107,14 @@ def test_a_reach_that_takes_a_short_side_away_is_refused(tmp_path: Path) -> None
         scene_of(path, heal=4e-3)
 
 
+def test_a_reach_is_at_most_a_tenth_of_the_smallest_side() -> None:
+    """That of the ground, which is 50 mm deep."""
+    drawn = metres([*BRICKS, GROUND])
+    heal(drawn, 0.0049)
+    with pytest.raises(SceneError, match="must be at most a tenth of the smallest block's smaller side"):
+        heal(drawn, 0.0051)
+
+
 def test_overlaps_are_healed_too(tmp_path: Path) -> None:
     outlines: list[Outline] = [
         [(0, -0.3), (200, -0.3), (200, 100.4), (0, 100.4)],
@@ -117,6 +125,29 @@ def test_overlaps_are_healed_too(tmp_path: Path) -> None:
     scene = scene_of(dxf(tmp_path / "wall.dxf", closed(outlines)), heal=5e-4)
     assert len(scene.joints) == 2
     assert "gaps and overlaps of up to 0.0004 m" in scene.notes[-1]
+
+
+def test_a_corner_over_an_edge_and_that_edge_meet_where_the_squares_of_their_ways_are_least() -> None:
+    """At a quarter of it: g = c + 3/4 a + 1/4 b for the corner's way down and those of the edge's ends up.
+
+    So c = g / (1 + 9/16 + 1/16), a = 3/4 c and b = 1/4 c; nothing else moves.
+    """
+    gap = 1e-3
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    wedge = np.array([[0.25, 1.0 + gap], [1.25, 2.0], [-0.75, 2.0]])
+    healed, _ = heal([square, wedge], 2 * gap)
+    down = gap / (1 + 9 / 16 + 1 / 16)
+    assert healed[0] - square == pytest.approx(np.array([[0, 0], [0, 0], [0, down / 4], [0, 3 / 4 * down]]), abs=2e-6)
+    assert healed[1] - wedge == pytest.approx(np.array([[0, -down], [0, 0], [0, 0]]), abs=2e-6)
+
+
+def test_two_corners_meet_in_their_middle() -> None:
+    left = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    right = np.array([[1.002, 0.0], [2.0, 0.0], [2.0, 1.0], [1.002, 1.0]])
+    healed, note = heal([left, right], 3e-3)
+    assert healed[0][[1, 2], 0] == pytest.approx([1.001, 1.001])
+    assert healed[1][[0, 3], 0] == pytest.approx([1.001, 1.001])
+    assert note == "heal: 4 corners moved, by at most 0.001 m, to close gaps and overlaps of up to 0.002 m"
 
 
 def test_a_joint_along_many_blocks_heals_to_one_straight_line() -> None:
