@@ -17,10 +17,16 @@ from runningbond.response.response import ResponseVerdict
 from runningbond.results import Outcome
 from runningbond.scene.history import STANDARD_GRAVITY
 
-from .walls import block, resting, shaken
+from ..walls import panel
+from .walls import resting
 
 PEAK = 3.0  # m/s²
-SCENE = block(0.25, 1.0, shaken("half-sine", PEAK, 0.5))
+SCENE = panel(  # 0.5 m wide and 2 m high, 3 m from the origin
+    wall={"outlines": [[[3, 0], [3.5, 0], [3.5, 2], [3, 2]]], "thickness": 0.12},
+    joint={"friction": 2.0, "normal_stiffness": 1e9, "shear_stiffness": 1e9},
+    load__live=None,
+    load__history={"pulse": {"kind": "half-sine", "amplitude": PEAK, "period": 0.5}, "quantity": "acceleration"},
+)
 UNIT = STANDARD_GRAVITY / PEAK
 
 
@@ -41,6 +47,7 @@ def search(monkeypatch: pytest.MonkeyPatch) -> Callable[[Told], Outcome]:
             verdict, missed = told(scale)
             drift = np.array([0.0, -0.1 * scale, 0.02 * scale])
             bare = replace(known(), time=np.arange(3.0), fallen=np.zeros(3, dtype=np.int64), steps=10)
+            bare = replace(bare, shape=np.array([[0.2, 0.0, 0.0], [0.0, 0.0, 0.0]]), motion=np.ones((2, 3)))
             return replace(bare, scale=scale, verdict=verdict, unaccounted=missed, drift=drift)
 
         monkeypatch.setattr(import_module("runningbond.response.critical"), "follow", at)
@@ -68,6 +75,7 @@ def test_the_bracket_is_as_narrow_as_it_is_asked_for_and_hardly_narrower(
     scales = outcome.curve[:, 1]
     assert outcome.curve[:, 0] == pytest.approx(2.0 * 0.1 * scales)  # of a block of 2 m
     assert outcome.path == pytest.approx(np.column_stack([scales < edge, 0.02 * scales]))
+    assert outcome.motion == pytest.approx(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))  # as it began, by one
     assert outcome.steps is not None
     assert outcome.steps > 10 * len(scales)  # and those until it was at rest
     assert "it stands again" not in outcome.message
@@ -124,3 +132,14 @@ def test_windows_run_from_the_first_scale_at_which_it_stands_again_to_the_last()
     verdicts |= {1.2: "collapse", 1.3: "undecided", 1.7: "undecided", 1.9: "collapse"}
     tried = {scale: replace(known(), scale=scale, verdict=verdict) for scale, verdict in verdicts.items()}
     assert Search(lambda scale: tried[scale], tried).windows() == [(1.4, 1.6), (1.8, 1.8), (2.0, 2.0)]
+
+
+def test_nothing_is_bisected_down_to_where_a_wall_neither_rests_nor_falls(search: Callable[[Told], Outcome]) -> None:
+    """Nothing would be known of where it begins to fall; of one such scale far below it does not matter."""
+    outcome = search(lambda scale: ("stands" if scale < 1 else "undecided" if scale < 2 else "collapse", 0.0))
+    assert outcome.status == "undecided"
+    assert np.diff(np.log(outcome.curve[:, 1])) == pytest.approx(np.log(RATIO))
+    unsure = START * UNIT * RATIO**2
+    outcome = search(lambda x: ("undecided" if abs(x - unsure) < 1e-9 else "stands" if x < 2 else "collapse", 0.0))
+    assert outcome.status == "collapse"
+    assert f"at all others but {unsure:.4f}, where it neither rests nor falls, below it" in outcome.message

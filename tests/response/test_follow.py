@@ -1,0 +1,108 @@
+"""When a wall is calm, sways, slides away or comes to rest: rows that are known, of a block 0.5 m wide and 2 m high."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.dynamics import Run
+from runningbond.response.follow import GATHERS, RISE, SPENT, STILL, _Log, _Row
+from runningbond.response.ground import Ground
+from runningbond.scene import Array
+
+from .housner import GRAVITY
+from .walls import block, resting, still
+
+WIDTH = 0.5
+CALM = RISE * GRAVITY * 1800.0 * 0.12 * WIDTH * 2.0 * WIDTH
+"""Energy [J] that lifts the block by so much of its width, over which it falls."""
+
+
+@cache
+def _log() -> Any:
+    rest = resting(block(WIDTH / 2, 1.0, still()))
+    run = Run(replace(rest.system, live=0.0 * rest.system.live), local=0.0)
+    return _Log(rest, Ground(run, rest.history, 1.0, rest.state.time), rest.state.copy(), rest.top)
+
+
+def log(kinetic: Sequence[float] | Array = (0.0,) * 40, way: Any = 0.0, works: tuple[float, float] = (0.0, 0.0)) -> Any:
+    """Rows a tenth of a second apart with their kinetic energies [J] and ways of the top [m].
+
+    And with the works of joints and of viscosity at the end [J], which grow evenly.
+    """
+    ways = np.broadcast_to(way, len(kinetic))
+    rows = []
+    for k, (energy, x) in enumerate(zip(kinetic, ways.tolist(), strict=True)):
+        spent, damped = (work * k / (len(kinetic) - 1) for work in works)
+        places = np.array([[x, 0.0], [x, 0.0]])
+        ledger = np.array([energy + spent + damped, 0.0, energy, 0.0, spent, damped])
+        rows.append(_Row(0.1 * k, np.zeros(2), places, x / 2.0, np.zeros(2), ledger, 0))
+    found = _log()
+    found.rows = rows
+    return found
+
+
+def test_a_wall_is_calm_whose_energy_would_hardly_lift_it() -> None:
+    """By a part of the width of a slender block; what there was before the time that is asked about is no matter."""
+    assert _log().calm == pytest.approx(CALM)
+    assert log([0.99 * CALM] * 40).is_calm(0.0)
+    assert not log([0.0] * 30 + [1.01 * CALM] + [0.0] * 9).is_calm(0.0)
+    assert log([1.01 * CALM] + [0.0] * 39).is_calm(0.1)
+    assert not log([1.01 * CALM] + [0.0] * 39).is_calm(0.0)
+
+
+def test_a_wall_that_gathers_energy_or_moves_on_is_not_calm() -> None:
+    """However little it is in motion; but for what is next to nothing."""
+    growing = np.linspace(0.1, 0.9, 40) * CALM
+    assert not log(growing).is_calm(0.0)
+    assert log(growing[::-1]).is_calm(0.0)
+    assert log(growing * GATHERS).is_calm(0.0)
+    far = STILL * WIDTH
+    assert log(way=np.linspace(0.0, 0.99 * far, 40)).is_calm(0.0)
+    assert not log(way=np.linspace(0.0, 1.01 * far, 40)).is_calm(0.0)
+    assert not log(way=0.99 * far).is_elsewhere
+    assert log(way=1.01 * far).is_elsewhere
+
+
+def test_a_wall_sways_that_stays_within_where_it_was_and_loses_energy_to_viscosity() -> None:
+    """A damped oscillation; not one that grows, or grows to one side, or whose joints take a part of what is lost."""
+    time = np.arange(40.0)
+    damped, energy = 0.05 * 0.97**time * np.cos(time), [CALM] * 40
+    assert log(energy, damped, (0.5 * SPENT, 1.0)).swaying(0.0) == pytest.approx(
+        [damped[20:].min() / 2, damped[20:].max() / 2]
+    )
+    assert log(energy, damped, (2.0 * SPENT, 1.0)).swaying(0.0) is None
+    assert log(energy, damped[::-1], (0.0, 1.0)).swaying(0.0) is None
+    for sense in (1.0, -1.0):
+        leaning = np.where(time < 20, 1.0, 0.5) * np.cos(time) + sense * np.where(time < 20, 0.0, 0.8)
+        assert log(energy, leaning, (0.0, 1.0)).swaying(0.0) is None
+
+
+def test_a_wall_slides_away_that_gathers_energy_in_each_quarter() -> None:
+    """As under a force that stays on, v ~ t: not one that goes on as it is, rocks, or hardly moves."""
+    sliding = CALM * np.linspace(1.0, 2.0, 40) ** 2
+    assert log(sliding).runs_away(0.0)
+    assert log(np.append([1e3 * CALM] * 10, sliding)).runs_away(1.0)
+    assert not log([CALM] * 40).runs_away(0.0)
+    assert not log(sliding[::-1]).runs_away(0.0)
+    assert not log(CALM * np.repeat([1.0, 2.0, 1.5, 3.0], 10)).runs_away(0.0)
+    assert not log(0.1 * GATHERS * sliding).runs_away(0.0)
+
+
+def test_a_motion_dies_away_whose_later_half_has_less_energy() -> None:
+    decay = CALM * np.exp(-0.01 * np.arange(40.0))
+    assert log(decay).dies_away(0.0)
+    assert not log(decay[::-1]).dies_away(0.0)
+
+
+@pytest.mark.parametrize(("missed", "lost"), [(0.9, False), (1.1, True), (-1.1, True), (math.nan, True)])
+def test_a_ledger_that_misses_more_than_works_have_gone_through_is_lost(missed: float, lost: bool) -> None:
+    found = log()
+    found._gone = 50.0
+    found.rows[-1].energy[2] = missed * (50.0 + CALM)
+    assert found.is_lost == lost
+    found._gone = 0.0
