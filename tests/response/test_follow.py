@@ -106,3 +106,39 @@ def test_a_ledger_that_misses_more_than_works_have_gone_through_is_lost(missed: 
     found.rows[-1].energy[2] = missed * (50.0 + CALM)
     assert found.is_lost == lost
     found._gone = 0.0
+
+
+def looked(*motions: Sequence[float], external: Sequence[float] = ()) -> Any:
+    """A log of states in which the block has moved by so much since it was at rest [m, m, rad], and works [J]."""
+    first = _log()
+    rest = resting(block(WIDTH / 2, 1.0, still()))
+    found, state = _Log(rest, first.ground, rest.state.copy(), rest.top), rest.state.copy()
+    for moved, work in zip(motions, external or [0.0] * len(motions), strict=True):
+        state.motion[:3] = rest.state.motion[:3] + moved
+        state.external = rest.state.external + work
+        found.look(state)
+    return found
+
+
+def test_a_block_has_fallen_that_is_lower_by_half_of_its_size_or_turned_by_60_degrees() -> None:
+    """Either way round; one that is lifted, or was pushed aside, has not."""
+    size = float(block(WIDTH / 2, 1.0, still()).block_sizes[0])
+    turned = [math.radians(angle) for angle in (59.0, -59.0, 61.0, -61.0)]
+    cases = [(0.0, -0.49 * size, 0.0), (0.0, 3.0 * size, 0.0), (3.0 * size, 0.0, 0.0), (0.0, -0.51 * size, 0.0)]
+    assert [looked(moved).first for moved in cases] == [[], [], [], [0]]
+    assert [looked((0.0, 0.0, angle)).first for angle in turned] == [[], [], [0], [0]]
+    again = looked(cases[3], cases[0])  # what has fallen stays so
+    assert [row.fallen for row in again.rows] == [0, 1, 1]
+
+
+def test_the_shape_of_a_motion_is_the_last_at_which_no_corner_has_gone_far() -> None:
+    """A tenth of the wall's size; here of a block that is pushed on, and comes back in the end."""
+    far = 0.1 * block(WIDTH / 2, 1.0, still()).size
+    found = looked((0.5 * far, 0.0, 0.0), (0.99 * far, 0.0, 0.0), (1.01 * far, 0.0, 0.0))
+    assert found.shape[0] == pytest.approx([0.99 * far, 0.0, 0.0])
+
+
+def test_works_have_gone_as_far_as_they_went_to_and_fro() -> None:
+    """5 J, back to 2 J, where they stay, and to 6 J: 12 J; two rows that are alike add none."""
+    none = (0.0, 0.0, 0.0)
+    assert looked(*[none] * 4, external=[5.0, 2.0, 2.0, 6.0])._gone == pytest.approx(12.0, rel=1e-6)
