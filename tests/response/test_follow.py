@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 from runningbond.dynamics import Run
+from runningbond.response import follow
 from runningbond.response.follow import GATHERS, RISE, SPENT, STILL, _Log, _Row
 from runningbond.response.ground import Ground
-from runningbond.scene import Array
+from runningbond.scene import ANCHOR, NO_TIES, Array, SceneError, Ties
 
+from ..walls import panel
 from .housner import GRAVITY
-from .walls import block, resting, still
+from .walls import block, resting, shaken, still
 
 WIDTH = 0.5
 CALM = RISE * GRAVITY * 1800.0 * 0.12 * WIDTH * 2.0 * WIDTH
@@ -108,11 +110,11 @@ def test_a_ledger_that_misses_more_than_works_have_gone_through_is_lost(missed: 
     found._gone = 0.0
 
 
-def looked(*motions: Sequence[float], external: Sequence[float] = ()) -> Any:
+def looked(*motions: Sequence[float], external: Sequence[float] = (), ties: Ties = NO_TIES) -> Any:
     """A log of states in which the block has moved by so much since it was at rest [m, m, rad], and works [J]."""
-    first = _log()
-    rest = resting(block(WIDTH / 2, 1.0, still()))
-    found, state = _Log(rest, first.ground, rest.state.copy(), rest.top), rest.state.copy()
+    rest = resting(replace(block(WIDTH / 2, 1.0, still()), ties=ties))
+    ground = Ground(Run(rest.system, local=0.0), rest.history, 1.0, rest.state.time)
+    found, state = _Log(rest, ground, rest.state.copy(), rest.top), rest.state.copy()
     for moved, work in zip(motions, external or [0.0] * len(motions), strict=True):
         state.motion[:3] = rest.state.motion[:3] + moved
         state.external = rest.state.external + work
@@ -142,3 +144,40 @@ def test_works_have_gone_as_far_as_they_went_to_and_fro() -> None:
     """5 J, back to 2 J, where they stay, and to 6 J: 12 J; two rows that are alike add none."""
     none = (0.0, 0.0, 0.0)
     assert looked(*[none] * 4, external=[5.0, 2.0, 2.0, 6.0])._gone == pytest.approx(12.0, rel=1e-6)
+
+
+def test_a_tie_that_is_drawn_stores_half_of_its_force_times_its_way() -> None:
+    """E A / l = 2e5 N/m of a rod to the left, as the block is lifted off its joint and pushed to the right."""
+    ends = np.array([[[0.0, 2.0], [-1.0, 2.0]]])
+    rod = Ties(np.array([[0, ANCHOR]]), ends, np.array([1e-4]), np.array([2e9]), np.array([1e4]), np.array([0.0]))
+    with_it, without = (looked((2e-3, 1e-2, 0.0), ties=ties).rows[-1].energy for ties in (rod, NO_TIES))
+    drawn = math.hypot(1.002, 0.01) - 1.0
+    assert with_it - without == pytest.approx([0, 0, 0, 0.5 * 2e5 * drawn**2, 0, 0], rel=1e-3, abs=1e-6)
+
+
+def test_points_are_above_the_ground_wherever_that_is() -> None:
+    """Of a wall that stands 5 m up, a hair below its base is none of which a drift is a share."""
+    high = panel(
+        wall={"outlines": [[[0, 5], [0.5, 5], [0.5, 7], [0, 7]]], "thickness": 0.12},
+        joint={"friction": 2.0, "normal_stiffness": 1e9, "shear_stiffness": 1e9},
+        load__live=None,
+        load__history={"pulse": {"kind": "half-sine", "amplitude": 0.1, "period": 0.01}, "quantity": "acceleration"},
+    )
+    rest = resting(high)
+    with pytest.raises(SceneError, match="points = .*: must be a list of points .*, higher than 5"):
+        follow(rest, 1.0, points=np.array([[0.2, 4.9]]))
+    assert follow(rest, 1.0, points=np.array([[0.2, 5.1]]), rows=50).verdict == "stands"
+
+
+@pytest.mark.parametrize("falls_first", [True, False])
+def test_a_ledger_that_is_lost_after_a_fall_alters_nothing_of_it(
+    falls_first: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Debris is followed no farther; what is lost before is no answer."""
+    lost = property(lambda log: log.rows[-2:][0].fallen > 0 if falls_first else len(log.rows) > 2)
+    monkeypatch.setattr(_Log, "is_lost", lost)
+    rest = resting(block(WIDTH / 2, 1.0, shaken("half-sine", 6.0, 1.0), stiffness=1e8))
+    response = follow(rest, 1.0, rows=50, after=60.0)
+    assert response.verdict == ("collapse" if falls_first else "undecided")
+    assert response.time[-1] < 3.0
+    assert response.message.startswith("falls: block 0" if falls_first else "more energy is missing than was supplied")

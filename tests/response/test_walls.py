@@ -260,7 +260,9 @@ def test_half_the_step_is_taken_where_the_ledger_does_not_close(monkeypatch: pyt
     assert closed.steps > 2.5 * once.steps
 
 
-@pytest.mark.parametrize("points", [[], "ab", [[0.1, float("nan")]], [[0.0, 0.0]], [0.0, 1.0], [[0.1, 1500.0]]])
+@pytest.mark.parametrize(
+    "points", [[], "ab", [[0.1, float("nan")]], [[0.0, 0.0]], [0.0, 1.0], [[0.1, 1500.0]], [[-1.5, 0.4]]]
+)
 def test_points_that_drift_is_no_share_of_are_refused(points: Any) -> None:
     scene = wall(shaken("half-sine", 8.0, 0.3))
     with pytest.raises(SceneError, match="points"):
