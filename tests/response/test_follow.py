@@ -13,7 +13,8 @@ from runningbond.dynamics import Run
 from runningbond.response import follow
 from runningbond.response.follow import GATHERS, RISE, SPENT, STILL, _Log, _Row
 from runningbond.response.ground import Ground
-from runningbond.scene import ANCHOR, NO_TIES, Array, SceneError, Ties
+from runningbond.scene import ANCHOR, NO_TIES, Array, History, SceneError, Ties
+from runningbond.scene.history import pulse
 
 from ..walls import panel
 from .housner import GRAVITY
@@ -181,3 +182,14 @@ def test_a_ledger_that_is_lost_after_a_fall_alters_nothing_of_it(
     assert response.verdict == ("collapse" if falls_first else "undecided")
     assert response.time[-1] < 3.0
     assert response.message.startswith("falls: block 0" if falls_first else "more energy is missing than was supplied")
+
+
+def test_a_record_is_followed_to_its_end_however_quiet_it_begins() -> None:
+    """Nothing for two seconds, more than the block is to be calm for, and then a pulse that brings it down."""
+    time, values = pulse("half-sine", 6.0, 1.0)
+    late = History(np.append(0.0, 2.0 + time[::10]), np.vstack([[0.0, 0.0], values[::10]]), interval=1 / 200)
+    rest = resting(block(WIDTH / 2, 1.0, late, stiffness=1e8))
+    assert rest.swing == pytest.approx(2 * math.sqrt(2.0 / GRAVITY))
+    response = follow(rest, 1.0, rows=50)
+    assert rest.swing < 2.0 < response.time[-1]
+    assert response.verdict == "collapse"

@@ -1,0 +1,83 @@
+"""What a wall is given of its record, and how it rests before."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.dynamics import Run
+from runningbond.response.ground import LONGEST, Ground
+from runningbond.scene import Array, History
+
+from ..walls import panel
+from .housner import GRAVITY
+from .walls import block, resting, still
+
+TIME = np.arange(0.0, 0.201, 0.02)
+VALUES = np.random.default_rng(2).uniform(-4.0, 4.0, (len(TIME), 2)) * [1.0, 0.2]
+
+
+def given(history: History, scale: float, times: Array) -> tuple[Array, Array, Ground]:
+    """Times to which a block was brought, and the velocities that it had been given there; its ground."""
+    rest = resting(block(0.25, 1.0, history, stiffness=1e10))
+    state = rest.state.copy()
+    ground = Ground(Run(rest.system, local=0.0, viscous=rest.viscous), history, scale, state.time)
+    there = []
+    for until in times:
+        ground.bring(state, float(until))
+        assert abs(ground.time(state) - until) <= ground.run.dt
+        there.append((ground.time(state), *ground.velocity))
+    found = np.array(there)
+    return found[:, 0], found[:, 1:], ground
+
+
+@pytest.mark.parametrize("rows", [0.003, 0.05])
+def test_a_wall_is_given_the_velocity_of_its_record_whenever_it_is_asked_for(rows: float) -> None:
+    """Within intervals of `LONGEST` as far off it as a chord is of a parabola, and at the end of the record not."""
+    history = History(TIME, VALUES)
+    times, velocity, ground = given(history, 1.5, np.arange(rows, 0.3, rows))
+    jerk = 1.5 * float(np.abs(np.diff(VALUES, axis=0)).max()) / 0.02
+    steps = LONGEST + ground.run.dt
+    assert velocity == pytest.approx(1.5 * history.velocity(times), abs=jerk * steps**2 / 8)
+    assert velocity[-1] == pytest.approx(1.5 * history.velocity(1.0), rel=1e-9)
+    assert ground.acceleration(0.02) == pytest.approx(1.5 * VALUES[1])
+
+
+def test_ground_that_moves_at_once_has_its_velocity_after_a_step_and_stops_after_one() -> None:
+    """A displacement along a straight line, to 0.05 m in 0.1 s."""
+    time = np.linspace(0.0, 0.1, 11)
+    bent = 0.5 * time + 1e-3 * time**2  # a record is to have an acceleration
+    history = History(time, np.column_stack([bent, 0 * time]), "displacement")
+    _, velocity, ground = given(history, 1.0, np.array([0.0, 0.001, 0.05, 0.099, 0.101]))
+    assert ground.run.dt < 5e-4
+    assert velocity[0].tolist() == [0.0, 0.0]
+    assert velocity[1:4, 0] == pytest.approx(0.5, rel=1e-3)
+    assert velocity[-1] == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_a_wall_rests_without_velocity_and_its_ground_bears_its_weight() -> None:
+    scene = block(0.25, 1.0, still())
+    rest = resting(scene)
+    assert not rest.state.velocity.any()
+    ground = Ground(Run(rest.system), rest.history, 1.0, rest.state.time)
+    weight = float(scene.mass[0]) * GRAVITY
+    assert ground.dead() == pytest.approx([0.0, -weight])
+    assert ground.momentum(rest.state).tolist() == [0.0, 0.0]
+    ground.velocity = np.array([2.0, -1.0])  # at rest on ground that moves
+    assert ground.momentum(rest.state) == pytest.approx(float(scene.mass[0]) * ground.velocity)
+
+
+def test_the_top_of_a_wall_is_its_highest_corners() -> None:
+    """Of three towers the outer ones of those that are as high, wherever the ground is; a swing is of its height."""
+    towers: list[Any] = [[x, y, x + 0.5, y + h] for x, y, h in ((0, 1, 2), (1, 1, 3), (2, 1, 3))]
+    outlines = [[[a, b], [c, b], [c, d], [a, d]] for a, b, c, d in towers]
+    history = {"pulse": {"kind": "half-sine", "amplitude": 0.1, "period": 0.01}, "quantity": "acceleration"}
+    stiff = {"friction": 0.6, "normal_stiffness": 1e8, "shear_stiffness": 1e8}
+    rest = resting(
+        panel(wall={"outlines": outlines, "thickness": 0.1}, joint=stiff, load__live=None, load__history=history)
+    )
+    assert rest.top == pytest.approx(np.array([[1.0, 4.0], [2.5, 4.0]]))
+    assert rest.height == pytest.approx(3.0)
+    assert rest.swing == pytest.approx(2 * math.sqrt(3.0 / GRAVITY))
+    assert [rest.block_at(np.array(at)) for at in ((0.49, 1.1), (1.01, 1.1), (1.9, 5.0))] == [0, 1, 2]
