@@ -11,7 +11,7 @@ import pytest
 
 from runningbond.dynamics import Run
 from runningbond.response import follow
-from runningbond.response.follow import GATHERS, RISE, SPENT, STILL, _Log, _Row
+from runningbond.response.follow import GATHERS, PART, RISE, SPENT, STILL, _is_past_the_ground, _Log, _Row
 from runningbond.response.ground import Ground
 from runningbond.scene import ANCHOR, NO_TIES, Array, History, SceneError, Ties
 from runningbond.scene.history import pulse
@@ -193,3 +193,16 @@ def test_a_record_is_followed_to_its_end_however_quiet_it_begins() -> None:
     response = follow(rest, 1.0, rows=50)
     assert rest.swing < 2.0 < response.time[-1]
     assert response.verdict == "collapse"
+    step = Run(rest.system, local=0.0, viscous=rest.viscous, part=PART).dt
+    assert response.steps == pytest.approx(response.time[-1] / step, rel=0.01)  # not those until it was at rest
+    assert response.scale == 1.0
+
+
+def test_a_block_is_past_the_ground_on_either_side_of_what_is_modelled() -> None:
+    """Ground from −1 m to 10 m; where held blocks are all that there is, nothing is said of ground."""
+    ground = [[[-1, -1], [10, -1], [10, 0], [-1, 0]]]
+    scene = panel(wall={"outlines": [[[0, 0], [1, 0], [1, 1], [0, 1]]], "ground": ground, "thickness": 0.1})
+    held = panel(support__kind="fixed-first-course")
+    for way, past in ((5.0, False), (9.6, True), (-1.4, False), (-1.6, True)):
+        assert _is_past_the_ground(scene, np.array([[way, 0.0, 0.0]]), 0) == past
+        assert not _is_past_the_ground(held, np.full((len(held.blocks), 3), 9.0), 20)

@@ -133,6 +133,24 @@ def test_a_taut_tie_is_a_spring_and_a_slack_one_is_none(others: int) -> None:
     assert slowest == pytest.approx(math.sqrt(spring / mass) / (2 * math.pi), rel=1e-3)
 
 
+def test_a_tie_that_yields_is_no_spring() -> None:
+    """A rod that is drawn as far as it bears by a push the other way, which friction bears the rest of."""
+    width, height, shear = 0.4, 0.2, 1e6
+    tie = {"from": [width, height / 2], "to": [width + 1.0, height / 2], "area": 1e-4, "young": 4e8, "yield": 10.0}
+    push = {"kind": "point", "at": [width / 2, height / 2], "force": [-60.0, 0.0]}
+    slowest = swaying(dem_vibration(stack(1, width, height, 1e11, shear, tie=[tie], load__dead=[push]), 3))[0]
+    mass = DENSITY * width * height * THICKNESS
+    assert slowest == pytest.approx(math.sqrt(shear * width * THICKNESS / mass) / (2 * math.pi), rel=1e-3)
+
+
+def test_walls_that_fall_or_are_not_pressed_together_do_not_vibrate() -> None:
+    with pytest.raises(SceneError, match="does not come to rest under its dead load"):
+        dem_vibration(stack(2, 0.1, 0.2, 1e9, 4e8, load__gravity=[9.0, -3.0]), 3)
+    hung = {"from": [0.2, 0.2], "to": [0.2, 1.2], "area": 1e-4, "young": 2e11, "yield": 1e4, "preload": 400.0}
+    with pytest.raises(SceneError, match="closes no joint: a wall that is not pressed together does not vibrate"):
+        dem_vibration(stack(1, 0.4, 0.2, 1e9, 4e8, tie=[hung]), 3)
+
+
 def test_a_beam_vibrates_with_its_own_mass() -> None:
     """As a course does that is as heavy: it had the mass of masonry of its size, whatever it weighs."""
     beam = {"height": 0.05, "mass": 2.0}
