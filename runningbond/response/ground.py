@@ -67,7 +67,7 @@ class Ground:
             return np.inf
         interval = min(self.history.resolution, LONGEST)
         to_the_next = interval * (np.floor(now / interval) + 1) - now
-        return float(min(to_the_next if to_the_next > step / 2 else interval, max(to_the_end, step)))
+        return float(min(to_the_next if to_the_next > step / 2 else interval, to_the_end))
 
     def momentum(self, state: State) -> Array:
         """Momentum of the wall in space ``(2,)`` [kg m/s]."""

@@ -206,3 +206,11 @@ def test_a_block_is_past_the_ground_on_either_side_of_what_is_modelled() -> None
     for way, past in ((5.0, False), (9.6, True), (-1.4, False), (-1.6, True)):
         assert _is_past_the_ground(scene, np.array([[way, 0.0, 0.0]]), 0) == past
         assert not _is_past_the_ground(held, np.full((len(held.blocks), 3), 9.0), 20)
+
+
+def test_a_short_record_has_as_many_rows_as_a_second() -> None:
+    """Fifty in a tenth of a second, and fifty a second after it."""
+    rest = resting(block(WIDTH / 2, 1.0, shaken("sine", 0.5, 0.1)))
+    time = follow(rest, 1.0, rows=50).time
+    assert int((time <= 0.1).sum()) == pytest.approx(50, abs=2)
+    assert int(((time > 0.2) & (time <= 0.7)).sum()) == pytest.approx(25, abs=1)
