@@ -232,6 +232,21 @@ def test_a_joint_that_has_softened_is_as_stiff_as_its_secant() -> None:
     assert found[0] < 0.95 * frequencies(scene, 3, np.tile([1e9, 4e8], (len(secant), 1)))[0]
 
 
+def test_a_joint_that_is_torn_where_it_stands_open_holds_nothing_there() -> None:
+    """A block that is pushed until nearly nothing but its toe bears: neither along nor across the joint."""
+    glue = {"cohesion": 600.0, "tensile_strength": 300.0, "fracture_energy_1": 1e-4, "fracture_energy_2": 1e-3}
+    push = {"kind": "point", "at": [0.0, 1.2], "force": [155.0, 0.0]}
+    scene = stack(1, 0.4, 1.2, 1e9, 4e8, joint={"friction": 0.6, **glue}, load__dead=[push])
+    run = Run(rigid_system(scene))
+    state = put_on_dead_load(run, Criteria(collapse=np.array([0.1]))).state
+    opening, _, normal, _ = run.tractions(state)
+    torn = (run.interface.law.damage(state.history) >= 1) & (opening > 0)
+    assert torn.any()
+    assert (normal[~torn] < 0).all()
+    own = frequencies(scene, 3, np.where(torn[:, None], 0.0, [1e9, 4e8]))
+    assert dem_vibration(scene, 3).frequency == pytest.approx(own, rel=1e-6)
+
+
 def test_equal_stacks_have_every_vibration_of_one_as_often_as_there_are_stacks() -> None:
     """Thirty of four blocks, 360 motions: Lanczos' method sees one of equal vibrations, and has no more directions."""
     joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 4e8))
