@@ -164,6 +164,29 @@ def test_heads_of_all_databases_of_peer(head: str, after: str, tmp_path: Path) -
     assert read_record(tmp_path / "el-centro.AT2", "file").quantity == "g"
 
 
+@pytest.mark.parametrize(
+    ("end", "unit", "quantity", "metres"),
+    [
+        ("at2", "ACCELERATION TIME SERIES IN UNITS OF G", "g", 1.0),
+        ("at2", "ACCELERATION TIME SERIES IN UNITS OF CM/S/S", "acceleration", 0.01),
+        ("AT2", "ACCELERATION TIME SERIES IN UNITS OF CM/S2", "acceleration", 0.01),
+        ("vt2", "VELOCITY TIME SERIES IN UNITS OF CM/SEC", "velocity", 0.01),
+        ("dt2", "DISPLACEMENT TIME HISTORY IN UNITS OF CM.", "displacement", 0.01),
+    ],
+)
+def test_records_of_peer_are_in_their_own_units(
+    end: str, unit: str, quantity: str, metres: float, tmp_path: Path
+) -> None:
+    """With exponents as Fortran writes them too."""
+    text = PEER.replace("ACCELERATION TIME SERIES IN UNITS OF G", unit).replace("1.E-1", "1.D-1")
+    (tmp_path / f"record.{end}").write_text(text)
+    record = read_record(tmp_path / f"record.{end}", "file")
+    assert record.quantity == quantity
+    assert record.values[:, 0] == pytest.approx(metres * np.array([0.1, 0.2, -0.1, 0.0, 0.1, 0.1, 0.0]))
+    assert not record.values[:, 1].any()
+    assert record.time == pytest.approx(0.005 * np.arange(7))
+
+
 def test_an_older_head_and_blanks(tmp_path: Path) -> None:
     old = PEER.replace("NPTS=  7, DT=   .0050 SEC,", "    7   .0050   NPTS, DT")
     (tmp_path / "old.vt2").write_text(old.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S"))
