@@ -143,3 +143,10 @@ def test_nothing_is_bisected_down_to_where_a_wall_neither_rests_nor_falls(search
     outcome = search(lambda x: ("undecided" if abs(x - unsure) < 1e-9 else "stands" if x < 2 else "collapse", 0.0))
     assert outcome.status == "collapse"
     assert f"at all others but {unsure:.4f}, where it neither rests nor falls, below it" in outcome.message
+
+
+def test_of_a_wall_that_falls_at_every_scale_no_lower_one_is_known(search: Callable[[Told], Outcome]) -> None:
+    outcome = search(lambda scale: ("collapse", 0.0))
+    assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", None, outcome.curve[0, 1])
+    assert outcome.curve[0, 1] < 1e-9 * MOST * UNIT
+    assert outcome.message.startswith("no scale was found at which the wall comes to rest below one at which it falls")
