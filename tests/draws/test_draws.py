@@ -95,7 +95,7 @@ def test_a_floor_loads_the_course_that_it_lies_in_whatever_the_sizes(model: str)
         {"kind": "point", "at": [0.6, 0.4], "force": [0.0, -1e4]},
         {"kind": "point", "at": [0.4, 0.7], "force": [-1.0, 0.0]},
         {"kind": "line", "from": [0.4, 0.4], "to": [0.7, 0.4], "force": [0.0, -1e4]},
-        {"kind": "moment", "at": [0.6, 0.38], "moment": 300.0},
+        {"kind": "moment", "at": [0.6, 0.399], "moment": 300.0},
     ],
 )
 def test_loads_stay_on_their_blocks_whatever_the_sizes(load: dict[str, Any]) -> None:
@@ -147,6 +147,36 @@ def test_pins_and_bars_stay_on_their_blocks_whatever_the_sizes() -> None:
     middle = drawn.blocks.centroid[drawn.ties.block[0]]
     assert drawn.ties.ends[0] == pytest.approx(middle)
     assert not np.allclose(drawn.ties.ends, scene.ties.ends)
+
+
+def test_pins_stay_at_the_corners_of_a_foot_that_is_narrower_than_its_wall() -> None:
+    """A block under the middle of two others, whose sides move."""
+    scene = courses([[-0.5, 1, -0.5], [1, 1]], 0.4, 0.2, support__kind="corners", **STIFF)
+    for k in range(1, 5):
+        drawn = Scatter(size=0.1).draw(scene, k)
+        (left, bottom), (right, _) = drawn.blocks.extent(0)
+        assert left != pytest.approx(0.2, abs=1e-9)
+        assert np.unique(drawn.pins.point, axis=0) == pytest.approx(np.array([[left, bottom], [right, bottom]]))
+
+
+def test_an_anchor_stays_where_it_is_though_all_blocks_move() -> None:
+    """One of a wall without a ground, whose last block is any block."""
+    tie = {"from": [0.6, 0.3], "to": [0.6, 2.0], "area": 1e-4, "young": 2e11, "yield": 4e8}
+    scene = courses([[1, 1]] * 3, 0.4, 0.2, support__kind="fixed-first-course", tie=[tie], **STIFF)
+    for k in range(1, 5):
+        drawn = Scatter(size=0.1).draw(scene, k)
+        assert drawn.ties.ends[0, 1] == pytest.approx([0.6, 2.0], abs=1e-12)
+        assert drawn.ties.ends[0, 0] != pytest.approx(np.array([0.6, 0.3]), abs=1e-6)
+
+
+def test_a_beam_keeps_its_size_though_a_joint_is_in_line_with_its_end() -> None:
+    """It lies on the upper one of two steps."""
+    scene = courses([[1, 1, 1], [1, 1]], 0.4, 0.2, beam={"height": 0.1, "mass": 10.0}, **STIFF)
+    block = scene.beam.block  # type: ignore[union-attr]
+    for k in range(1, 5):
+        drawn = Scatter(size=0.1).draw(scene, k)
+        assert drawn.blocks.polygon(block) == pytest.approx(scene.blocks.polygon(block), abs=1e-12)
+        assert not np.array_equal(drawn.blocks.vertices, scene.blocks.vertices)
 
 
 def test_joints_do_not_pass_each_other_where_they_are_near() -> None:
