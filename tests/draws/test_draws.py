@@ -172,7 +172,9 @@ def test_an_anchor_stays_where_it_is_though_all_blocks_move() -> None:
 def test_a_beam_keeps_its_size_though_a_joint_is_in_line_with_its_end() -> None:
     """It lies on the upper one of two steps."""
     scene = courses([[1, 1, 1], [1, 1]], 0.4, 0.2, beam={"height": 0.1, "mass": 10.0}, **STIFF)
-    block = scene.beam.block  # type: ignore[union-attr]
+    assert scene.beam is not None
+    assert scene.beam.block is not None
+    block = scene.beam.block
     for k in range(1, 5):
         drawn = Scatter(size=0.1).draw(scene, k)
         assert drawn.blocks.polygon(block) == pytest.approx(scene.blocks.polygon(block), abs=1e-12)
@@ -358,6 +360,20 @@ def test_walls_that_fall_under_their_weight_or_never_are_ranked_among_the_others
     )
     said = json.loads(json.dumps(strong.summary(), allow_nan=False))
     assert (said["collapsed"], said["unbounded"], said["quantiles"]["50"]) == (2, 3, None)
+
+
+def test_a_quantile_between_a_wall_that_falls_and_one_that_never_does_is_infinite() -> None:
+    """Of 1, 2, 3 and ∞ three quarters lie below none."""
+    walls = (*map(outcome, (1.0, 2.0, 3.0)), replace(outcome(None), status="unbounded"))
+    assert Draws(walls, Scatter()).quantiles == pytest.approx(
+        {"5": 1.15, "25": 1.75, "50": 2.5, "75": np.inf, "95": np.inf}
+    )
+
+
+def test_no_draw_is_known_better_than_the_one_with_the_widest_bracket() -> None:
+    brackets = ((0.59, 0.61), (0.5, 0.7), (0.6, 0.602))
+    walls = tuple(Outcome("wall", "fem", "collapse", (a + b) / 2, a, b) for a, b in brackets)
+    assert Draws(walls, Scatter()).half_width == pytest.approx(0.1)
 
 
 def test_draws_of_which_none_or_one_collapses_have_no_spread() -> None:

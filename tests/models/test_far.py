@@ -1,0 +1,44 @@
+"""Models that are asked to follow walls through finite displacements."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from runningbond.models import MODELS
+from runningbond.models.far import going_far
+from runningbond.scene import SceneError
+
+
+def test_a_model_that_goes_far_is_the_same_with_a_distance() -> None:
+    """What it is asked for reaches it; where small displacements are asked for it is as it was."""
+    asked: list[dict[str, Any]] = []
+
+    def solve(*_: Any, **keys: Any) -> Any:
+        asked.append(keys)
+
+    model = replace(MODELS["dem-dynamic"], solve=solve)
+    assert going_far(model, "small", None) is model
+    far = going_far(model, "finite", 0.25)
+    far.solve(None, 0.1)
+    assert asked == [{"displacements": "finite", "distance": 0.25}]
+    assert far.is_finite
+    assert not model.is_finite
+    assert far.name == model.name
+
+
+@pytest.mark.parametrize(
+    ("name", "displacements", "distance", "said"),
+    [
+        ("dem-dynamic", "small", 0.1, 'distance = 0.1: goes with displacements="finite" alone'),
+        ("dem-dynamic", "finite", 0.0, "distance = 0.0: must be a number above 0"),
+        ("dem-dynamic", "large", None, "displacements = 'large': must be one of"),
+        ("limit", "finite", None, "displacements = 'finite': must be \"small\" for limit; "),
+    ],
+)
+def test_displacements_that_a_model_does_not_follow_are_refused(
+    name: str, displacements: str, distance: float | None, said: str
+) -> None:
+    with pytest.raises(SceneError) as refused:
+        going_far(MODELS[name], displacements, distance)
+    assert str(refused.value).startswith(said)
