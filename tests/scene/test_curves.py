@@ -1,0 +1,96 @@
+"""Arcs and the chords that stand for them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runningbond.scene import Array
+from runningbond.scene.drawings.curves import SAGITTA, TURN, Arc, Chords
+
+SHARES = np.linspace(0.0, 1.0, 7)
+
+
+def circle(start: float, sweep: float, radius: float = 2.0) -> Arc:
+    return Arc(np.array([1.0, -1.0]), radius * np.eye(2), start, sweep)
+
+
+def angles(points: Array) -> Array:
+    """Angles of points about the centre of `circle`, going on where they come round."""
+    return np.unwrap(np.arctan2(*(points - [1.0, -1.0]).T[::-1]))
+
+
+@pytest.mark.parametrize("axes", [[[2.0, 1.0], [-0.5, 1.5]], [[2.0, 1.0], [0.5, -1.5]]])
+@pytest.mark.parametrize("sweep", [0.7, -2.0])
+def test_an_arc_runs_along_its_axes_whichever_of_them_is_to_the_left(axes: list[list[float]], sweep: float) -> None:
+    """A mirrored one is drawn with its second axis to the right of the first."""
+    centre, (along, up) = np.array([3.0, -1.0]), np.array(axes)
+    arc = Arc.along(centre, np.array(axes), 0.4, sweep)
+    t = 0.4 + sweep * SHARES[:, None]
+    assert arc.at(arc.start + arc.sweep * SHARES) == pytest.approx(centre + np.cos(t) * along + np.sin(t) * up)
+    assert np.linalg.det(arc.axes) > 0
+
+
+@pytest.mark.parametrize("bulge", [1.0, math.tan(math.pi / 8), -0.3, -2.0])
+def test_a_bulge_is_the_tangent_of_a_quarter_of_the_angle(bulge: float) -> None:
+    """From p to q; its middle is half of the chord times the bulge to the right of it."""
+    p, q = np.array([1.0, 1.0]), np.array([4.0, 5.0])
+    arc = Arc.from_bulge(p, q, bulge)
+    assert arc.sweep == pytest.approx(4 * math.atan(bulge))
+    first, middle, last = arc.at(arc.start + arc.sweep * np.array([0.0, 0.5, 1.0]))
+    assert first == pytest.approx(p)
+    assert last == pytest.approx(q)
+    assert middle == pytest.approx((p + q) / 2 + bulge * 2.5 * np.array([0.8, -0.6]))
+
+
+@pytest.mark.parametrize("angle", [1e-4, 0.01, 0.5, 1.0, 2.0, 6.0])
+def test_an_arc_has_as_few_chords_as_leave_it_by_a_small_part(angle: float) -> None:
+    """Of its radius and of its length, whichever is less; the largest distance is known."""
+    arc, ends = circle(0.3, angle), circle(0.3, angle).ends
+    chords = Chords([arc], ends, 1e-9)
+    points = chords.cut(arc)
+    assert angles(points) == pytest.approx(0.3 + np.linspace(0.0, angle, len(points)))
+
+    def off(number: int) -> float:
+        return 2.0 * (1 - math.cos(angle / number / 2))
+
+    allowed = SAGITTA * 2.0 * min(1.0, angle)
+    assert chords.number == len(points) - 1
+    assert chords.sagitta == pytest.approx(off(chords.number), rel=1e-4)
+    assert off(chords.number) <= allowed * (1 + 1e-4)
+    assert chords.number == 1 or off(chords.number - 1) > allowed
+
+
+def test_who_draws_along_a_curve_in_either_sense_gets_the_same_chords() -> None:
+    """Cut at all corners that lie on it, and nowhere twice."""
+    to, fro = circle(0.0, 2.0), circle(2.5, -1.5)
+    corner = circle(0.0, 1.3).ends[1]
+    near = corner + [3e-7, 0.0]
+    chords = Chords([to, fro], np.vstack([to.ends, fro.ends, corner, near]), 1e-6)
+    there, back = angles(chords.cut(to)), angles(chords.cut(fro))
+    assert (np.diff(there) > 1e-3).all()
+    assert (np.diff(back) < -1e-3).all()
+    both = there[(there > 0.999) & (there < 2.001)]
+    assert back[(back > 0.999) & (back < 2.001)][::-1] == pytest.approx(both, abs=1e-6)
+    for at in (1.0, 1.3, 2.0):
+        assert np.abs(both - at).min() < 1e-6
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_whole_circle_is_cut_at_corners_on_it_all_the_way_round(sense: float) -> None:
+    on = [circle(0.0, at).ends[1] for at in (4.0, 1.0, 6.2)]
+    whole = circle(3.0, sense * TURN)
+    points = Chords([whole], np.vstack([*on, [9.0, 9.0]]), 1e-6).cut(whole)
+    found = angles(points)
+    assert found[-1] - found[0] == pytest.approx(sense * TURN)
+    assert (np.diff(found) * sense > 0.01).all()
+    for at in (1.0, 4.0, 6.2):
+        assert np.abs(np.mod(found - at + 1, TURN) - 1).min() < 1e-9
+
+
+def test_corners_on_either_side_of_where_parameters_begin_are_one() -> None:
+    """A hair above and below an angle of zero."""
+    whole = circle(0.0, TURN)
+    corners = np.vstack([whole.at([1e-8, -1e-8]), whole.at(2.0)])
+    points = Chords([whole], corners, 1e-6).cut(whole)
+    assert np.hypot(*np.diff(points, axis=0).T).min() > 1e-3
