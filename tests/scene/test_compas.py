@@ -188,6 +188,45 @@ def test_a_pier_as_wide_as_it_is_thick_is_the_same_from_both_sides_unless_it_lie
         scene_of(tmp_path / "wall.json", units="m", thickness=0.3)
 
 
+def test_a_pier_in_millimetres_is_as_thick_as_its_wall_in_metres(tmp_path: Path) -> None:
+    found = stack(UPRIGHT, 0.12)
+    for node in found["data"]["graph"]["data"]["node"].values():
+        for vertex in node["block"]["data"]["vertex"].values():
+            vertex |= {axis: 1e3 * x for axis, x in vertex.items()}
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    assert multiplier(scene_of(tmp_path / "wall.json", units="mm")) == pytest.approx(0.5, rel=1e-6)
+    with pytest.raises(SceneError, match="wall.thickness = 0.125: must be "):  # by 4 % another one
+        scene_of(tmp_path / "wall.json", units="mm", thickness=0.125)
+
+
+@pytest.mark.parametrize("layout", [assembly, untyped])
+def test_supports_may_be_what_is_usual_in_a_file(layout: Any, tmp_path: Path) -> None:
+    """COMPAS writes for each block what differs from that."""
+    found = layout()
+    if layout is assembly:
+        graph = found["data"]["graph"]["data"]
+        usual, nodes = graph["default_node_attributes"], graph["node"]
+    else:
+        usual, nodes = found["assembly"]["dva"], found["assembly"]["vertex"]
+    usual["is_support"] = True
+    for key, node in nodes.items():
+        node.pop("is_support", None)
+        node |= {} if key == "7" else {"is_support": False}
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    drawing = read_drawing(tmp_path / "wall.json", "m")
+    assert (len(drawing.blocks), len(drawing.grounds)) == (7, 1)
+
+
+@pytest.mark.parametrize("face", [0.0, 0.12])
+def test_a_block_that_reaches_farther_than_the_others_on_either_side_is_told(face: float, tmp_path: Path) -> None:
+    found = assembly()
+    for vertex in found["data"]["graph"]["data"]["node"]["2"]["block"]["data"]["vertex"].values():
+        vertex["y"] += 0.5 * (face - 0.06) * (vertex["y"] == face)
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    with pytest.raises(SceneError, match="node 2: does not reach as far as the others do along x, y or z"):
+        read_drawing(tmp_path / "wall.json", "m")
+
+
 def test_a_flat_pier_is_seen_across_its_plane(tmp_path: Path) -> None:
     (tmp_path / "wall.json").write_text(json.dumps(stack(("y", "z", "x"), 0.0)))
     assert multiplier(scene_of(tmp_path / "wall.json", units="m", thickness=0.3)) == pytest.approx(0.5, rel=1e-6)

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import shapely
+from ezdxf.math import BSpline
 
 from runningbond.scene import Array
-from runningbond.scene.drawings.curves import SAGITTA, TURN, Arc, Chords
+from runningbond.scene.drawings.curves import SAGITTA, TURN, Arc, Chords, spline_points
 
 SHARES = np.linspace(0.0, 1.0, 7)
 
@@ -74,6 +76,37 @@ def test_who_draws_along_a_curve_in_either_sense_gets_the_same_chords() -> None:
     assert back[(back > 0.999) & (back < 2.001)][::-1] == pytest.approx(both, abs=1e-6)
     for at in (1.0, 1.3, 2.0):
         assert np.abs(both - at).min() < 1e-6
+
+
+def test_an_arc_that_passes_where_parameters_begin_is_cut_in_order() -> None:
+    arc = circle(5.5, 2.0)
+    corners = [circle(0.0, at).ends[1] for at in (0.5, 6.0, 0.1)]
+    found = angles(Chords([arc], np.vstack([arc.ends, *corners]), 1e-6).cut(arc))
+    assert found - found[0] + 5.5 == pytest.approx(np.sort(found - found[0] + 5.5))
+    for at in (6.0, 0.1 + TURN, 0.5 + TURN):
+        assert np.abs(found - found[0] + 5.5 - at).min() < 1e-9
+
+
+def spline(knots: list[float] | None = None) -> BSpline:
+    control = [(0, 0), (1, 3), (3, -2), (4, 1), (6, 1), (7, 4), (9, 0)]
+    return BSpline([(x, y, 0) for x, y in control], order=4, knots=knots)
+
+
+def test_chords_of_a_spline_leave_it_by_a_small_part_of_its_length_between_two_knots() -> None:
+    """As far as all of them are alike; many knots do not make it coarser."""
+    drawn, points = spline(), spline_points(spline())[:, :2]
+    way = np.array([(p.x, p.y) for p in drawn.points(np.linspace(0.0, max(drawn.knots()), 4001))])
+    off = shapely.distance(shapely.points(way), shapely.LineString(points)).max()
+    length = float(np.hypot(*np.diff(way, axis=0).T).sum())
+    assert off <= SAGITTA * length / 4  # of four spans
+    assert points[[0, -1]] == pytest.approx(np.array([[0, 0], [9, 0]]))
+
+
+def test_a_spline_begins_and_ends_where_it_is_known() -> None:
+    """One with even knots at a sixth of its first, four sixths of its second and a sixth of its third control point."""
+    points = spline_points(spline([float(k) for k in range(11)]))[:, :2]
+    assert points[0] == pytest.approx((np.array([0, 0]) + 4 * np.array([1, 3]) + np.array([3, -2])) / 6)
+    assert points[-1] == pytest.approx((np.array([6, 1]) + 4 * np.array([7, 4]) + np.array([9, 0])) / 6)
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])

@@ -271,6 +271,22 @@ def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:
     assert note == "units: the drawing's header says cm, wall.units says mm, which counts"
 
 
+@pytest.mark.parametrize(
+    ("code", "unit", "metres"), [(1, "in", 0.0254), (2, "ft", 0.3048), (4, "mm", 1e-3), (5, "cm", 0.01), (6, "m", 1.0)]
+)
+def test_a_header_with_the_units_of_the_wall_is_nothing_to_say(
+    code: int, unit: str, metres: float, tmp_path: Path
+) -> None:
+    """By AutoCAD's codes of $INSUNITS; a wall is as many metres long as its drawing units are."""
+
+    def units(document: Any, _: Any) -> None:
+        document.header["$INSUNITS"] = code
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(), units), unit)
+    assert not any(note.startswith("units: ") for note in drawing.notes)
+    assert np.ptp(np.vstack(drawing.blocks), axis=0) == pytest.approx(np.array([400.0, 300.0]) * metres)
+
+
 def test_a_drawing_without_a_header_is_not_said_to_have_one(tmp_path: Path) -> None:
     """What scripts write: entities and nothing else."""
 

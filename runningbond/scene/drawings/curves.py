@@ -133,9 +133,7 @@ class Chords:
             t, corners = np.zeros(1), curve.at(0.0)
         first = curve.parameters(ends[:1])[0][0]
         if arc.closed:
-            order = np.argsort(np.mod(t - t[0], TURN))
-            after, corners = np.append(np.mod(t - t[0], TURN)[order], TURN), np.vstack([corners[order], corners[:1]])
-            first = t[0]
+            after, corners, first = np.append(t - t[0], TURN), np.vstack([corners, corners[:1]]), t[0]
         else:
             sweep, slack = abs(arc.sweep), self.tolerance / curve.radius
             after = np.mod(t - first, TURN)
