@@ -271,6 +271,33 @@ def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:
     assert note == "units: the drawing's header says cm, wall.units says mm, which counts"
 
 
+@pytest.mark.parametrize(("state", "seen"), [("on", ["0", "STONE"]), ("off", ["STONE"]), ("freeze", [])])
+def test_what_an_insert_holds_is_seen_where_its_layer_is_off_but_not_where_it_is_frozen(
+    state: str, seen: list[str], tmp_path: Path
+) -> None:
+    """As CAD programs show it; what is on layer 0 in it is on the layer of the INSERT, and off with that."""
+
+    def insert(document: Any, space: Any) -> None:
+        getattr(document.layers.add("INSERTS"), state)()
+        two = document.blocks.new("TWO")
+        two.add_lwpolyline(box(0, 300, 100, 400), close=True, dxfattribs={"layer": "STONE"})
+        two.add_lwpolyline(box(100, 300, 250, 400), close=True)
+        space.add_blockref("TWO", (0, 0), dxfattribs={"layer": "INSERTS"})
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(), insert), "mm")
+    areas = {"STONE": 0.01, "0": 0.015}
+    assert sorted(_areas(drawing.blocks[7:])) == pytest.approx(sorted(areas[layer] for layer in seen))
+
+
+def test_what_is_invisible_is_no_stone_and_said_to_be_left_out(tmp_path: Path) -> None:
+    def hidden(_: Any, space: Any) -> None:
+        space.add_lwpolyline(box(0, 300, 100, 400), close=True, dxfattribs={"invisible": 1})
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(), hidden), "mm")
+    assert len(drawing.blocks) == 7
+    assert drawing.notes == ("left out: 1 LWPOLYLINE on layer 0, invisible",)
+
+
 @pytest.mark.parametrize(
     ("code", "unit", "metres"), [(1, "in", 0.0254), (2, "ft", 0.3048), (4, "mm", 1e-3), (5, "cm", 0.01), (6, "m", 1.0)]
 )
@@ -445,6 +472,37 @@ def test_round_blocks_are_cut_to_their_area(kind: str, tmp_path: Path) -> None:
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", draw), "mm")
     (block,) = drawing.blocks
     assert _areas([block])[0] == pytest.approx(math.pi * 1e-2, rel=3e-3)
+
+
+def test_an_arc_runs_counter_clockwise_from_its_start_past_zero(tmp_path: Path) -> None:
+    """The right half of a disc; mirrored, where its axis points away, the left one."""
+
+    def half(_: Any, space: Any) -> None:
+        space.add_arc((1000, 600), 200, 270, 90)
+        space.add_line((1000, 400), (1000, 800))
+
+    def mirrored(_: Any, space: Any) -> None:
+        space.add_arc((1000, 1600), 200, 270, 90, dxfattribs={"extrusion": (0, 0, -1)})
+        space.add_line((-1000, 1400), (-1000, 1800))
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", half, mirrored), "mm")
+    boxes = sorted([*o.min(axis=0), *o.max(axis=0)] for o in drawing.blocks)
+    assert boxes[0] == pytest.approx([-1.2, 1.4, -1.0, 1.8], abs=1e-3)
+    assert boxes[1] == pytest.approx([1.0, 0.4, 1.2, 0.8], abs=1e-3)
+
+
+def test_corners_of_a_frame_are_none_of_its_curve(tmp_path: Path) -> None:
+    """An old polyline that was fitted to a curve holds the corners of its control polygon as well."""
+
+    def fitted(_: Any, space: Any) -> None:
+        curve, frame = box(0, 300, 100, 400), [(50, 350), (500, 900)]
+        polyline = space.add_polyline2d([*curve[:2], *frame, *curve[2:]], close=True)
+        for vertex in polyline.vertices[2:4]:
+            vertex.dxf.flags |= 16
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(), fitted), "mm")
+    assert _areas(drawing.blocks[7:]) == pytest.approx([0.01])
+    assert len(drawing.blocks[7]) == 4
 
 
 def test_two_blocks_along_one_spline_touch(tmp_path: Path) -> None:
