@@ -112,6 +112,15 @@ def test_an_area_that_no_outline_goes_round_is_an_opening(tmp_path: Path) -> Non
     assert "one area within them is an opening" in drawing.notes[0]
 
 
+@pytest.mark.parametrize("again", [1, 4])
+def test_lines_that_were_drawn_twice_take_no_stone_away(again: int, tmp_path: Path) -> None:
+    """Twice is what two neighbours draw; nobody is beyond an outer line."""
+    sides = [(0, 0, 100, 0), (100, 0, 100, 100), (100, 100, 0, 100), (0, 100, 0, 0)]
+    twice = lines(*sides, *sides[:again])
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", twice, closed([box(200, 0, 300, 100)])), "mm")
+    assert _areas(drawing.blocks) == pytest.approx([0.01, 0.01])
+
+
 def test_lines_that_cross_are_cut_where_they_do(tmp_path: Path) -> None:
     cross = lines(
         (0, 0, 200, 0), (200, 0, 200, 200), (200, 200, 0, 200), (0, 200, 0, 0), (0, 90, 200, 90), (70, 0, 70, 200)
@@ -489,6 +498,18 @@ def test_an_arc_runs_counter_clockwise_from_its_start_past_zero(tmp_path: Path) 
     boxes = sorted([*o.min(axis=0), *o.max(axis=0)] for o in drawing.blocks)
     assert boxes[0] == pytest.approx([-1.2, 1.4, -1.0, 1.8], abs=1e-3)
     assert boxes[1] == pytest.approx([1.0, 0.4, 1.2, 0.8], abs=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["add_lwpolyline", "add_polyline2d"])
+def test_a_polyline_whose_axis_points_away_is_seen_from_the_other_side(kind: str, tmp_path: Path) -> None:
+    """As a mirrored block leaves it: x of its corners counts the other way."""
+
+    def mirrored(_: Any, space: Any) -> None:
+        getattr(space, kind)(box(600, 300, 700, 400), close=True, dxfattribs={"extrusion": (0, 0, -1)})
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(), mirrored), "mm")
+    found = drawing.blocks[7]
+    assert [*found.min(axis=0), *found.max(axis=0)] == pytest.approx([-0.7, 0.3, -0.6, 0.4])
 
 
 def test_corners_of_a_frame_are_none_of_its_curve(tmp_path: Path) -> None:
