@@ -193,6 +193,21 @@ def test_layers_are_named_in_any_letters(version: str, form: str, tmp_path: Path
     assert drawing.notes == ("left out: 1 LINE on layer Оси, which is off",)
 
 
+def test_a_corner_in_the_middle_of_a_side_is_none_even_if_it_is_drawn_first(tmp_path: Path) -> None:
+    stone = [(100, 300), (200, 300), (200, 400), (0, 400), (0, 300)]
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, stone])), "mm")
+    assert sorted(map(tuple, drawing.blocks[7].round(9))) == [(0.0, 0.3), (0.0, 0.4), (0.2, 0.3), (0.2, 0.4)]
+
+
+def test_a_ground_however_large_neither_straightens_stones_nor_makes_slivers_of_them(tmp_path: Path) -> None:
+    """What is a corner, and what is a stone, is measured by stones: one leans out by a tenth of a millimetre."""
+    stone = [(0, 300), (200, 300), (200.1, 350), (200, 400), (0, 400)]
+    ground = closed([box(-50_000, -100_000, 50_000, 0)], layer="ground")
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, stone]), ground, ground=False), "mm")
+    assert len(drawing.blocks[7]) == 5
+    assert drawing.notes == ()
+
+
 def test_an_outline_too_thin_for_a_stone_is_pointed_out(tmp_path: Path) -> None:
     """What two strokes a hundredth of a millimetre apart enclose makes contact anywhere a matter of 0.2 µm."""
     strip = closed([box(0, 300, 400, 300.01)])

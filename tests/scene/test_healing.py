@@ -14,7 +14,7 @@ from runningbond.scene import Array, Blocks, SceneError, find_joints
 from runningbond.scene.drawings import healing, read_drawing
 from runningbond.scene.drawings.healing import heal, missed_joints
 
-from .drafting import BRICKS, GROUND, Outline, closed, dxf, multiplier, scene_of
+from .drafting import BRICKS, GROUND, Outline, box, closed, dxf, multiplier, scene_of
 
 
 def metres(outlines: list[Outline]) -> list[Array]:
@@ -193,3 +193,11 @@ def test_a_gap_that_healing_leaves_open_is_not_said_to_be_closed_by_less_of_it(t
 def test_a_wide_gap_is_meant() -> None:
     apart = [[(x, y + (40 if k >= 5 else 0)) for x, y in o] for k, o in enumerate(BRICKS)]
     assert missed_joints(metres([*BRICKS, GROUND])) == missed_joints(metres([*apart, GROUND])) == ""
+
+
+def test_a_gap_is_wide_or_narrow_beside_the_smaller_of_two_blocks() -> None:
+    """Bricks 3 mm above a ground of a hundred metres: for that it would be nothing. Half a millimetre is seen."""
+    ground = box(-50_000.0, -100_000.0, 50_000.0, 0.0)
+    for lifted, seen in ((3.0, False), (0.5, True)):
+        bricks = [[(x, y + lifted) for x, y in brick] for brick in BRICKS]
+        assert bool(missed_joints(metres([*bricks, ground]))) == seen
