@@ -201,3 +201,12 @@ def test_a_gap_is_wide_or_narrow_beside_the_smaller_of_two_blocks() -> None:
     for lifted, seen in ((3.0, False), (0.5, True)):
         bricks = [[(x, y + lifted) for x, y in brick] for brick in BRICKS]
         assert bool(missed_joints(metres([*bricks, ground]))) == seen
+
+
+def test_of_several_gaps_the_widest_is_told() -> None:
+    """0.3 mm under the middle course and 0.6 mm over it; what is proposed closes both."""
+    lifted = [[(x, y + (0 if k < 2 else 0.3 if k < 5 else 0.9)) for x, y in brick] for k, brick in enumerate(BRICKS)]
+    note = missed_joints(metres([*lifted, GROUND]))
+    assert note.startswith("a gap of 0.0006 m between block 2")
+    healed, _ = heal(metres([*lifted, GROUND]), float(note.split("heal = ")[1].split()[0]))
+    assert touching(healed) == 14
