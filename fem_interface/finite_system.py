@@ -6,27 +6,15 @@ They strain a block by the square of its corners' speed over that of sound in it
 its inertia by its strain.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.rigid_sides import in_space, turn_out
 from runningbond.contacts.search import Contacts, facing_sides, find_contacts, position_of, resting
-from runningbond.dynamics import (
-    BlockSystem,
-    Interface,
-    block_frequency_squared,
-    joint_shares,
-    moving_far,
-    stable_step,
-)
-from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.frames import keep_frames
-from runningbond.joints.law import KernelLaw
+from runningbond.dynamics import BlockSystem, Interface, moving_far
 from runningbond.scene import Array, Indices, Mask
 
 from .deformable_sides import (
@@ -36,7 +24,8 @@ from .deformable_sides import (
     reframe_deformable,
     scatter_deformable,
 )
-from .mass_scaling import CLOSE, ScaledModes, scaled_modes
+from .finite_frequency import frequency_squared
+from .mass_scaling import ScaledModes, scaled_modes
 from .node_outline import NodeOutline
 from .system import DAMPING, block_system
 
@@ -194,10 +183,9 @@ class DeformableContacts:
     def interface(self, contacts: Contacts, scaled: ScaledModes | BlockSystem, guess: float) -> Interface:
         """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
-        bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
-        reframe = reframe_deformable if self.blocks.scene.history else keep_frames
+        bound = frequency_squared(self.blocks, scaled, contacts, geometry, law, guess)
         kernels = gather_deformable, scatter_deformable
-        return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe)
+        return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe_deformable)
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
         """A key of each contact and its number, two ``(n,)``: contacts are points."""
@@ -256,64 +244,3 @@ class DeformableContacts:
         pairs = zip(self.blocks.tables, self.blocks.wall.split(motion), strict=True)
         far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for table, Q in pairs]
         return float(np.sqrt(2) * max(far, default=0.0))
-
-
-Blocks: TypeAlias = tuple[Array, Array, Array, Array]
-"""Blocks of one template: their shares of contacts ``(n, m, m)``, masses, stiffness and viscosity ``(n, m)``."""
-
-
-def _frequency_squared(templates: list[Blocks], guess: float) -> float:
-    """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
-
-    The viscosity of the deformations counts as in `stable_step`.
-    """
-    square = guess
-    while True:
-        viscous = 2 / stable_step(square, VISCOUS, LOCAL)
-        bound = 0.0
-        for stiffness, mass, k, c in templates:
-            with_own = stiffness + np.einsum("ij,jk->ijk", k + viscous * c, np.eye(k.shape[1]))
-            bound = max(bound, float(block_frequency_squared(with_own, mass).max()))
-        if bound <= square:
-            return bound
-        square = bound * (1 + CLOSE)
-
-
-def _blocks_on(
-    blocks: NodeOutline,
-    scaled: ScaledModes | BlockSystem,
-    contacts: Contacts,
-    geometry: DeformableSides,
-    law: KernelLaw,
-) -> Iterator[Blocks]:
-    """The blocks of each template, on contacts."""
-    wall = blocks.wall
-    motion = np.zeros(len(scaled.mass))
-    motion[wall.rigid] = contacts.motion.reshape(-1, 3)
-    gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
-    turned, contact = geometry.placed.blocks, geometry.contact
-    n = contact[:, 2:4]
-    directions = ((n, law.stiffest), (np.column_stack([-n[:, 1], n[:, 0]]), law.shear_stiffness))
-    split = [wall.split(values) for values in (scaled.mass, wall.stiffness, scaled.viscosity)]
-    mass = scaled.mass[wall.rigid[:, 0]]
-    facets = geometry.touched[:, :2]
-    owner = blocks.nodes.owner[facets]
-    for number, (template, table) in enumerate(zip(wall.templates, blocks.tables, strict=True)):
-        own = np.zeros((len(template.blocks), *2 * [len(template.modes.mass)]))
-        for side in (0, 1):
-            here = np.flatnonzero(wall.place[owner[:, side], 0] == number)
-            block, facet, share = owner[here, side], facets[here, side], contact[here, 4 + side, None, None]
-            start, stop = blocks.row[facet], blocks.row[blocks.nodes.following[facet]]
-            at = (1 - share) * table[start] + share * table[stop]
-            cosine, sine, x, y = turned[block].T
-            arm = contact[here, :2] - np.column_stack([x, y])
-            part = joint_shares(mass[np.column_stack([block, owner[here, 1 - side]])], 0.5)[:, 0]
-            for direction, stiffness in directions:
-                dx, dy = direction[here].T
-                local = np.column_stack([cosine * dx + sine * dy, cosine * dy - sine * dx])
-                turn = arm[:, 0] * dy - arm[:, 1] * dx
-                row = np.column_stack([dx, dy, turn, np.einsum("px,pxm->pm", local, at)])
-                weight = part * stiffness[here] * contacts.area[here]
-                np.add.at(own, wall.place[block, 1], weight[:, None, None] * row[:, :, None] * row[:, None, :])
-        mass_k, k, c = (values[number].T for values in split)
-        yield own, mass_k, k, c

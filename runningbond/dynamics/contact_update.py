@@ -23,31 +23,44 @@ HELD = 1.1
 MOST_STEPS = 1000
 """Steps between two looks at how far the bodies have moved."""
 
+KEPT = 2
+"""Interfaces that are kept: a state that is looked at may be on the contacts before those of the one that goes on."""
+
 
 class ContactUpdate:
     """Keeps the contacts of states up to date as the bodies of a system move."""
 
     def __init__(self, system: BlockSystem, search: ContactSearch) -> None:
         self._system, self._search = system, search
-        loads = (np.abs(system.dead) + np.abs(system.live)) / system.mass
-        self._acceleration = self._reach(loads[system.rigid], np.zeros(2))
+        self._live = self.acceleration(system.live)
         self._drawn = system.ties.accelerations(system.mass, search.outline.reach)
+        self._made: list[tuple[Contacts, Interface]] = []
 
     def interface_on(self, contacts: Contacts) -> Interface:
         """The interface on contacts, with a frequency no lower than that of the undeformed wall."""
         undeformed = self._system.interface
         if contacts is self._search.undeformed:
             return undeformed
+        for made, interface in self._made:
+            if made is contacts:
+                return interface
         interface = self._search.interface_on(contacts, self._system)
         # Bodies that have flown apart have no frequency, and may meet again.
         closer = interface.closer and max(interface.closer, undeformed.closer or 0.0)
         bound = max(interface.frequency_squared, undeformed.frequency_squared)
-        return replace(interface, frequency_squared=bound, closer=closer)
+        interface = replace(interface, frequency_squared=bound, closer=closer)
+        self._made = [(contacts, interface), *self._made[: KEPT - 1]]
+        return interface
 
-    def steps_until_next_look(self, state: State, dt: float) -> int:
+    def acceleration(self, load: Array) -> float:
+        """Largest acceleration that a load ``(nd,)`` [N] alone gives any point of a body [m/s²]."""
+        return self._reach((np.abs(load) / self._system.mass)[self._system.rigid], np.zeros(2))
+
+    def steps_until_next_look(self, state: State, dt: float, acceleration: float, multiplier: float = 0.0) -> int:
         """Steps of a length [s] in which the bodies may have moved as far as no contact can be missed.
 
-        None, 0, where they have used up three quarters of that way.
+        None, 0, where they have used up three quarters of that way. Loads alone accelerate them by so much [m/s²] and,
+        besides, by a multiple of the live load.
         """
         contacts, rigid = contacts_of(state), state.motion[self._system.rigid]
         way = contacts.margin / 2 - self._search.deformation(state.motion)
@@ -55,7 +68,8 @@ class ContactUpdate:
         if left < way / 4:
             return 0
         drawn = float(self._drawn @ self._system.ties.force(state.motion, state.stretch)) if len(self._drawn) else 0.0
-        speed, gain = SPEED_FACTOR * self._travel(state.velocity), SPEED_FACTOR * (self._acceleration + drawn)
+        speed = SPEED_FACTOR * self._travel(state.velocity)
+        gain = SPEED_FACTOR * (acceleration + abs(multiplier) * self._live + drawn)
         root = np.sqrt(speed**2 + 2 * gain * left)
         time = 2 * left / (speed + root) if root > 0 else np.inf
         return int(np.clip(time / dt, 1, MOST_STEPS))

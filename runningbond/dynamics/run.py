@@ -144,14 +144,23 @@ class Run:
         if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
             self._take_up(self._update.interface_on(contacts), contacts)
 
-    def _pieces(self, state: State, steps: int, update: ContactUpdate) -> Iterator[int]:
-        """Numbers of steps to take one after the other, on contacts that are good for so many."""
+    def _pieces(self, state: State, steps: int, load: Array, more: float | None) -> Iterator[int]:
+        """Numbers of steps to take one after the other, on contacts that are good for so many.
+
+        A load ``(nd,)`` [N] is on the bodies, and up to some multiple of the live one `more`: where None is given, what
+        drove them in the last steps.
+        """
+        if self._update is None:
+            yield steps
+            return
+        update, acceleration = self._update, self._update.acceleration(load)
         while steps > 0:
             self._return_to(state)
-            piece = update.steps_until_next_look(state, self.dt)
+            loads = acceleration, state.multiplier if more is None else more
+            piece = update.steps_until_next_look(state, self.dt, *loads)
             if not piece:
                 self._take_up(update.renew(state, self.interface, self.dt), contacts_of(state))
-                piece = max(1, update.steps_until_next_look(state, self.dt))
+                piece = max(1, update.steps_until_next_look(state, self.dt, *loads))
             piece = min(steps, piece)
             yield piece
             steps -= piece
@@ -219,11 +228,14 @@ class Run:
             live = live.copy() if system.leaning else live
         elif system.rig is not None or system.pushing is not None:
             live = self._live()  # it turns with the beam, or with blocks
-        for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
+        more = None if control == "driven" else speed * steps if control == "held" else 0.0
+        for piece in self._pieces(state, steps, load, more):
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             taken, stable, multipliers, work = self._take(number, state, load, live, speed, piece, watch)
             total += multipliers
+            if control == "driven":
+                state.multiplier = multipliers / taken
             state.external += float(load.dot(state.motion)) - before + work
             if control == "held" and speed:
                 load = load + taken * speed * live

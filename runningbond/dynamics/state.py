@@ -30,6 +30,7 @@ class State:
     external: float = 0.0  # work of the loads [J]
     # part of it: what dead loads do beyond the work that they would do constant, as they act at rest [J] (`rig`)
     turned: float = 0.0
+    multiplier: float = 0.0  # of the live load, where that drives: its mean over the last steps
     steps: int = 0  # steps taken
     time: float = 0.0  # time since the start [s]
     # (1,) largest energy that was supplied at any look at it [J]

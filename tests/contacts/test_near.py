@@ -96,9 +96,9 @@ def test_blocks_that_move_as_one_are_not_sought_anew_before_they_have_left_the_g
     margin = contacts_of(state).margin
     for far, due in ((0.74, False), (0.76, True)):
         state.motion[system.rigid[~WALL.fixed, 0]] = far * margin
-        assert (update.steps_until_next_look(state, 1e-5) == 0) == due
+        assert (update.steps_until_next_look(state, 1e-5, 9.81) == 0) == due
     state.motion[:] = 0.0
     for far, due in ((0.37, False), (0.38, True)):
         one, other = np.flatnonzero(~WALL.fixed)[:2]
         state.motion[system.rigid[[one, other], 0]] = far * margin, -far * margin
-        assert (update.steps_until_next_look(state, 1e-5) == 0) == due
+        assert (update.steps_until_next_look(state, 1e-5, 9.81) == 0) == due

@@ -12,6 +12,7 @@ from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond import Wall
 from runningbond.dynamics import Run, State
+from runningbond.dynamics.contact_update import ContactUpdate
 from runningbond.dynamics.lead import Way, WayRow
 from runningbond.dynamics.push import Push
 from runningbond.joints import wall_points
@@ -114,6 +115,30 @@ def test_the_ground_bears_the_push_and_the_weight() -> None:
     assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # a moment's, and a row's mean
     assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=0.01)
     assert up.mean() == pytest.approx(weight, rel=0.01)
+
+
+def test_a_push_is_the_same_whatever_the_unit_of_its_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many steps, and as many looks at how far blocks have come; λ is one over the unit, to the last bit.
+
+    So it is for a unit that is a power of two, which leaves all digits as they are.
+    """
+    looks, look = [0], ContactUpdate.steps_until_next_look
+
+    def counted(self: ContactUpdate, *arguments: Any) -> int:
+        looks[0] += 1
+        return look(self, *arguments)
+
+    monkeypatch.setattr(ContactUpdate, "steps_until_next_look", counted)
+    told = []
+    for unit in (1.0, 2.0**20):
+        looks[0] = 0
+        scene = slender({"kind": "point", "at": [0.0, HEIGHT], "force": [unit, 0.0]})
+        outcome = dem_dynamic(scene, 0.02, displacements="finite", distance=0.02)
+        assert outcome.lower is not None
+        assert outcome.upper is not None
+        told.append((outcome.status, outcome.steps, looks[0], unit * outcome.lower, unit * outcome.upper))
+    assert told[0] == told[1]
+    assert told[0][0] == "collapse"
 
 
 def test_a_push_ends_where_it_is_asked_to() -> None:
