@@ -1,6 +1,7 @@
 """Blocks that are not convex at finite displacements: corners in notches, interlocked stones, convex parts."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from runningbond.scene import (
     Lateral,
     Load,
     Mortar,
+    PointLoad,
     Scene,
     build_scene,
 )
@@ -195,6 +197,30 @@ def test_stones_on_a_crooked_bed_bear_on_the_area_of_their_joints(turn: float) -
     borne = contacts.area[closed & (contacts.joint >= 0)].sum()
     assert borne == pytest.approx(scene.thickness * scene.joints.length.sum())
     assert contacts.area[closed].sum() < 1.08 * borne
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_stone_that_holds_on_by_its_hook_breaks_at_the_strength_of_its_stem(model: Any) -> None:
+    """A tee whose arms are behind two jaws, pulled at its stem, which breaks across all of its section at once."""
+    tee = [(0, 0), (0.1, 0), (0.1, 0.2), (0.9, 0.2), (0.9, 0.4), (0.1, 0.4), (0.1, 0.6), (0, 0.6)]
+    jaws = box(0.1, -0.2, 2.0, 0.2), box(0.1, 0.4, 0.3, 0.8)
+    strength, friction, height, width = 1e5, 0.01, 0.2, 0.1
+    glue = JointMaterial(0.6, 5 * strength, strength, elasticity=Mortar(1e10, 0.2, 0.01))
+    scene = build_scene(
+        "tee",
+        [np.array(tee, dtype=float)],
+        grounds=[np.array(jaw, dtype=float) for jaw in jaws],
+        thickness=width,
+        block=BlockMaterial(2000.0, 1e10),
+        joint=JointMaterial(friction, elasticity=MORTAR),
+        inner_joint=replace(glue, fracture_energy_1=5.0, fracture_energy_2=50.0),
+        load=Load(live=(PointLoad((0.9, 0.3), (1.0, 0.0)),)),
+    )
+    outcome = model(scene, 0.02, displacements="finite", distance=1e-3)
+    assert outcome.status == "collapse"
+    beyond = scene.blocks.centroid[scene.wall, 0].argmax()
+    dragged = friction * 9.81 * scene.mass[scene.wall][beyond]
+    assert outcome.multiplier == pytest.approx(strength * height * width + dragged, rel=0.01)
 
 
 def interlocked(cells: list[str], **keys: Any) -> Scene:
