@@ -387,8 +387,8 @@ class Wall:
 
     def __repr__(self) -> str:
         low, high = self.scene.blocks.extent(self.scene.wall)
-        length, height = high - low
-        return f"<Wall {self.scene.title!r}: {self.scene.wall.sum()} blocks, {length:.4g} × {height:.4g} m>"
+        (length, height), count = high - low, int(self.scene.wall.sum())
+        return f"<Wall {self.scene.title!r}: {count} block{'s' * (count != 1)}, {length:.4g} × {height:.4g} m>"
 
     def _repr_svg_(self) -> str:
         from .pictures.captions import to_svg
