@@ -105,6 +105,23 @@ def test_stones_expand_alike_wherever_they_are(turn: float, offset: float) -> No
         assert shapely.Polygon(one).symmetric_difference(back).area < 0.02 * MORTAR * back.length
 
 
+def test_beds_of_bricks_are_straight() -> None:
+    """A wall that slides on one of them does so at tan φ, whatever the largest width."""
+    corners = [(0.25 * n + 0.125 * (k % 2), 0.1 * k) for k in range(3) for n in range(8)]
+    drawn = [box(x + 0.005, y + 0.005, x + 0.245, y + 0.095) for x, y in corners]
+    for width in (0.0101, 0.012, 0.017):
+        wall = rb.Wall.outlines(drawn, expand=width, **SOLID)
+        assert wall.run("limit").multiplier == pytest.approx(0.6, rel=1e-9)
+        ends = wall.scene.joints.ends[wall.scene.joints.is_bed]
+        assert np.abs(np.diff(ends[:, :, 1], axis=1)).max() < 1e-8
+
+
+def test_mortar_between_pieces_of_the_ground_is_no_stones() -> None:
+    grounds = [box(-1.0, -0.5, 0.195, 0.0), box(0.205, -0.5, 1.4, 0.0)]
+    outlines = expand([box(0.0, 0.01, 0.195, 0.1), box(0.205, 0.01, 0.4, 0.1)], grounds, 0.012)[0]
+    assert [outline[:, 1].min() for outline in outlines] == pytest.approx([0.0, 0.0], abs=1e-7)
+
+
 def test_what_stones_share_as_drawn_is_shared_like_mortar() -> None:
     """Two boxes that overlap by 4 mm part midway, as two do that are 4 mm apart."""
     for gap in (-0.004, 0.004):
@@ -142,3 +159,28 @@ def test_joints_as_wide_as_stones_are_refused() -> None:
     size: dict[str, Any] = {"length": 1.0, "height": 0.5, "block_width": 0.25, "block_height": 0.1}
     with pytest.raises(SceneError, match=r"wall.expand: does not go with wall.length; describe the wall in one way"):
         rb.Wall.running_bond(**size, **SOLID, wall={"expand": 0.01})
+
+
+def test_widths_that_take_too_many_samples_are_refused() -> None:
+    """As that of a joint in another unit, of which memory would run out."""
+    what = r"wall.expand = 1e-05: must be at least 2.2e-05 m for blocks with 7.2 m of sides$"
+    with pytest.raises(SceneError, match=what):
+        rb.Wall.outlines(bricks(MORTAR), expand=1e-5, **SOLID)
+
+
+HALL = np.array([(0, 0), (0.6, 0), (0.6, 0.3), (0.31, 0.3), (0.31, 0.2), (0.5, 0.2), (0.5, 0.1), (0.1, 0.1)])
+HALL = np.vstack([HALL, [(0.1, 0.2), (0.3, 0.2), (0.3, 0.3), (0, 0.3)]])
+
+
+@pytest.mark.parametrize(
+    ("stones", "grounds", "what"),
+    [
+        ([box(0, 0, 0.6, 0.3), box(0.1, 0.1, 0.2, 0.2)], [], r"finds 100% of block 1 at .* in block 0; draw"),
+        ([box(0, 0, 0.6, 0.3), box(0.2, 0, 0.8, 0.3)], [], r"finds 67% of block [01] at .* in block [01]; draw"),
+        ([box(0, 0, 0.6, 0.3)], [box(-1, -1, 2, 0.2)], r"finds 67% of block 0 at \(0.3, 0.15\) in the ground; draw"),
+        ([HALL, box(0.11, 0.11, 0.49, 0.19)], [], r"has block 0 at .* go all around what it encloses; cut it in two"),
+    ],
+)
+def test_stones_in_others_are_told_where(stones: list[Array], grounds: list[Array], what: str) -> None:
+    with pytest.raises(SceneError, match=f"wall.expand = 0.012: {what}"):
+        rb.Wall.outlines(stones, grounds or None, expand=0.012, **SOLID)

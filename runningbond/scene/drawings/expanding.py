@@ -38,6 +38,11 @@ PAST, PAST_FACES = 1.0, 1.5
 REACH = 2.5
 """How far from other stones samples are of use, in largest widths."""
 
+MOST_SAMPLES = 2e6
+"""Of all stones together, for which memory and a minute or two suffice."""
+
+SHARED = 0.1
+"""Of a stone's area that is in another one: what is more is no inaccuracy of a survey."""
 
 GRID = 1e-6
 """What corners are rounded to, in largest widths: without, GEOS now and then takes shapes whose sides all but coincide
@@ -64,13 +69,18 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
     Raises
     ------
     SceneError
-        For a width above the smallest stone's smaller side, and where a stone is left in pieces.
+        For a width above the smallest stone's smaller side or next to nothing beside all stones' sides, and for stones
+        that lie in others or in the ground, or would go all around others.
     """
     origin = np.vstack([*stones]).mean(axis=0)  # corners far from zero would be rounded by more than they should
     drawn = np.array([shapely.Polygon(stone - origin) for stone in stones])
     sides = smaller_sides(list(drawn))
     if width > sides.min():
         what = f"must be at most the smallest block's smaller side, {sides.min():.4g}: that of {_name(sides, stones)}"
+        raise SceneError(KEY, what, width)
+    length = float(shapely.length(drawn).sum())
+    if length > MOST_SAMPLES * SAMPLED * width:
+        what = f"must be at least {length / (MOST_SAMPLES * SAMPLED):.2g} m for blocks with {length:.3g} m of sides"
         raise SceneError(KEY, what, width)
     grid = GRID * width
     ground = shapely.union_all([shapely.Polygon(outline - origin) for outline in grounds], grid_size=grid)
@@ -86,7 +96,8 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
         parts = shapely.get_parts(shapely.union_all(faces[owner == k], grid_size=grid))
         largest = max(parts, key=lambda part: float(part.area), default=None)
         if largest is None or largest.interiors or largest.area < drawn[k].area / 2:
-            raise SceneError(KEY, f"leaves block {k} at {_place(stone, stones)} in pieces; draw it anew", width)
+            named = f"block {k} at {_place(stone, stones)}"
+            raise SceneError(KEY, _unfit(named, k, drawn, ground, bool(largest and largest.interiors)), width)
         expanded.append(np.array(shapely.geometry.polygon.orient(largest).exterior.coords)[:-1] + origin)
     around = sum(shapely.Polygon(outline).length for outline in expanded)
     filled = whole.area - shapely.difference(shapely.union_all(drawn, grid_size=grid), ground, grid_size=grid).area
@@ -102,6 +113,19 @@ def _name(sides: Array, stones: Sequence[Array]) -> str:
     return f"block {k} at {_place(stones[k], stones)}"
 
 
+def _unfit(named: str, k: int, drawn: Any, ground: Any, around: bool) -> str:
+    """Why a stone cannot be expanded: what it lies in, if it does, what it goes around, or that it comes apart."""
+    shared = shapely.area(shapely.intersection(drawn, drawn[k]))
+    shared[k] = shapely.area(shapely.intersection(ground, drawn[k]))
+    other = int(shared.argmax())
+    if shared[other] > SHARED * drawn[k].area:
+        what = "the ground" if other == k else f"block {other}"
+        return f"finds {shared[other] / drawn[k].area:.0%} of {named} in {what}; draw each where it ends"
+    if around:
+        return f"has {named} go all around what it encloses; cut it in two, or give a smaller width"
+    return f"leaves {named} in pieces; draw it anew"
+
+
 def _place(stone: Array, stones: Sequence[Array]) -> str:
     return place(stone.mean(axis=0), float(np.ptp(np.vstack([*stones]), axis=0).max()))
 
@@ -109,14 +133,21 @@ def _place(stone: Array, stones: Sequence[Array]) -> str:
 def _mortared(drawn: Any, ground: Any, width: float) -> Any:
     """Stones with the mortar between them and on the ground: all gaps up to a width, and pockets twice as wide."""
     grid = GRID * width
-    drawn = shapely.union_all([*drawn, ground], grid_size=grid)
-    grown = shapely.buffer(drawn, width / 2, join_style="mitre")
-    closed = shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), drawn, grid_size=grid)
+    stones = shapely.union_all(drawn, grid_size=grid)
+    closed = _closed(shapely.union(stones, ground, grid_size=grid), width)
+    # What is between pieces of the ground is as little a stone's.
+    ground = shapely.union(ground, shapely.difference(_closed(ground, width), stones, grid_size=grid), grid_size=grid)
     parts = []
     for part in shapely.get_parts(closed):
         holes = [ring for ring in part.interiors if not shapely.Polygon(ring).buffer(-width).is_empty]
         parts.append(shapely.Polygon(part.exterior, holes))
     return shapely.difference(shapely.union_all(parts, grid_size=grid), ground, grid_size=grid)
+
+
+def _closed(shape: Any, width: float) -> Any:
+    """A shape with its gaps up to a width."""
+    grown = shapely.buffer(shape, width / 2, join_style="mitre")
+    return shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), shape, grid_size=GRID * width)
 
 
 def _apart(drawn: Any, grid: float) -> Any:
@@ -149,12 +180,42 @@ def _middle_lines(inner: Any, whole: Any, width: float) -> list[Any]:
     between = (pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & (ends >= 0).all(axis=1)
     # Where four samples lie on a circle, corners of their cells differ by rounding alone.
     segments = np.round(diagram.vertices[ends[between]] / far, 12) * far
+    pair = np.sort(pair[between], axis=1)
     region = shapely.buffer(whole, width / 2)
     shapely.prepare(region)
     middle = segments.mean(axis=1)
     there = shapely.contains_xy(region, middle[:, 0], middle[:, 1]) & (segments[:, 0] != segments[:, 1]).any(axis=1)
-    merged = shapely.line_merge(shapely.multilinestrings(shapely.linestrings(segments[there])))
-    return list(shapely.get_parts(merged))
+    stones, of = np.unique(pair[there], axis=0, return_inverse=True)
+    order = np.argsort(of.ravel(), kind="stable")
+    merged = shapely.line_merge(
+        shapely.multilinestrings(shapely.linestrings(segments[there][order]), indices=of.ravel()[order])
+    )
+    lines, of = shapely.get_parts(merged, return_index=True)
+    return list(_in_the_middle(lines, inner[stones[of]]))
+
+
+def _in_the_middle(lines: Any, stones: Any) -> Any:
+    """Lines, each between its two stones ``(n, 2)``, whose corners but the ends are as far from one as from the other.
+
+    Those of samples' cells are so within a hundredth of the widest joint, of which a bed's line would lean.
+    """
+    corners, line = shapely.get_coordinates(lines, return_index=True)
+    inner = np.zeros(len(corners), dtype=bool)
+    inner[1:-1] = (line[:-2] == line[1:-1]) & (line[1:-1] == line[2:])
+    at, sides = corners[inner], stones[line[inner]]
+    shapely.prepare(stones)
+    for _ in range(2):  # the first time, it is there already between straight sides
+        apart, away = [], []
+        for stone in sides.T:
+            line_there = shapely.shortest_line(stone, shapely.points(at))
+            off = np.diff(shapely.get_coordinates(line_there).reshape(-1, 2, 2), axis=1)[:, 0]
+            apart.append(np.hypot(*off.T))
+            away.append(off / apart[-1][:, None])
+        slope = away[0] - away[1]
+        steep = (slope**2).sum(axis=1)
+        at = at - np.where(steep > 1, (apart[0] - apart[1]) / steep.clip(1.0), 0.0)[:, None] * slope
+    corners[inner] = at
+    return shapely.set_coordinates(lines, corners)
 
 
 def _straightened(lines: list[Any], width: float) -> list[Any]:
