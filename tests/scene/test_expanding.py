@@ -184,3 +184,35 @@ HALL = np.vstack([HALL, [(0.1, 0.2), (0.3, 0.2), (0.3, 0.3), (0, 0.3)]])
 def test_stones_in_others_are_told_where(stones: list[Array], grounds: list[Array], what: str) -> None:
     with pytest.raises(SceneError, match=f"wall.expand = 0.012: {what}"):
         rb.Wall.outlines(stones, grounds or None, expand=0.012, **SOLID)
+
+
+@pytest.mark.parametrize(
+    ("stones", "width"),
+    [
+        (  # between two ends with bumps one corner of a line is left
+            [
+                [(-0.41013, 0.53509), (-0.40274, 0.53795), (-0.09417, 0.54079), (-0.09017, 0.54585)]
+                + [(-0.08499, 0.76642), (-0.09729, 0.76672), (-0.39016, 0.72043)],
+                [(-0.0712, 0.53884), (0.18795, 0.48957), (0.18677, 0.74754), (-0.05347, 0.75744)],
+            ],
+            0.021,
+        ),
+        (  # stones that overlap, with a line's corner on one of them
+            [
+                [(0.228, 0.496), (0.376, 0.291), (0.268, 0.514)],
+                [(0.235, 0.421), (0.223, 0.487), (0.11, 0.493)],
+                [(0.114, 0.5), (0.372, 0.535), (0.121, 0.783)],
+            ],
+            0.0042,
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_short_lines_are_drawn_as_well(stones: list[list[tuple[float, float]]], width: float) -> None:
+    outlines = expand([counter_clockwise(np.array(stone)) for stone in stones], [], width)[0]
+    assert all(shapely.Polygon(outline).is_valid for outline in outlines)
+
+
+def counter_clockwise(stone: Array) -> Array:
+    """Its corners, in that sense."""
+    return np.array(shapely.geometry.polygon.orient(shapely.Polygon(stone)).exterior.coords)[:-1]

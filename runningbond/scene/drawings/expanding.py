@@ -14,7 +14,7 @@ from scipy.spatial import Voronoi
 
 from ..arrays import Array
 from ..errors import SceneError, place
-from ..polygons import smaller_sides
+from ..polygons import polygonal_parts, smaller_sides
 
 KEY = "wall.expand"
 
@@ -138,7 +138,7 @@ def _mortared(drawn: Any, ground: Any, width: float) -> Any:
     # What is between pieces of the ground is as little a stone's.
     ground = shapely.union(ground, shapely.difference(_closed(ground, width), stones, grid_size=grid), grid_size=grid)
     parts = []
-    for part in shapely.get_parts(closed):
+    for part in polygonal_parts(closed):
         holes = [ring for ring in part.interiors if not shapely.Polygon(ring).buffer(-width).is_empty]
         parts.append(shapely.Polygon(part.exterior, holes))
     return shapely.difference(shapely.union_all(parts, grid_size=grid), ground, grid_size=grid)
@@ -210,7 +210,7 @@ def _in_the_middle(lines: Any, stones: Any) -> Any:
             line_there = shapely.shortest_line(stone, shapely.points(at))
             off = np.diff(shapely.get_coordinates(line_there).reshape(-1, 2, 2), axis=1)[:, 0]
             apart.append(np.hypot(*off.T))
-            away.append(off / apart[-1][:, None])
+            away.append(off / np.maximum(apart[-1], np.finfo(float).tiny)[:, None])
         slope = away[0] - away[1]
         steep = (slope**2).sum(axis=1)
         at = at - np.where(steep > 1, (apart[0] - apart[1]) / steep.clip(1.0), 0.0)[:, None] * slope
@@ -282,7 +282,8 @@ def _simplified(corners: Array, bumps: Array, free: dict[tuple[float, float], fl
     past = [width * free.get(tuple(at), 0.0) for at in corners[[0, -1]]]
     apart = np.hypot(*(corners[:, None] - bumps).transpose(2, 0, 1)).min(axis=1, initial=np.inf)
     stays = apart > BUMP * width
-    stays[[0, -1]] |= ~stays[1:-1].any() | (apart[[0, -1]] > 0)
+    stays[[0, -1]] |= apart[[0, -1]] > 0
+    stays[[0, -1]] |= stays.sum() < 2
     straight = shapely.get_coordinates(shapely.simplify(shapely.linestrings(corners[stays]), STRAIGHTENED * width))
     if past[0]:
         straight[0] = _beyond(straight[1], straight[0], corners[0], past[0])
