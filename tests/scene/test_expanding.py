@@ -134,6 +134,7 @@ def test_what_is_wider_than_a_joint_stays_open() -> None:
     outlines, note = expand([box(0, 0, 0.2, 0.1), box(0.25, 0, 0.4, 0.1)], [], 0.02)
     assert [shapely.Polygon(outline).area for outline in outlines] == pytest.approx([0.02, 0.015])
     assert note == "expand: there is no mortar between stones"
+    assert expand([box(0, 0, 0.2, 0.1), box(0.2, 0, 0.4, 0.1)], [], 0.02)[1] == note
 
 
 def test_drawings_are_expanded_too(tmp_path: Path) -> None:

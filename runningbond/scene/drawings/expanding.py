@@ -103,7 +103,7 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
     filled = whole.area - shapely.difference(shapely.union_all(drawn, grid_size=grid), ground, grid_size=grid).area
     bed = shapely.intersection(shapely.boundary(ground), whole.boundary, grid_size=grid).length if grounds else 0.0
     length = (around - whole.length) / 2 + bed
-    if length < SHRUNK * np.sqrt(whole.area):
+    if length < SHRUNK * np.sqrt(whole.area) or filled < 10 * grid * length:
         return expanded, "expand: there is no mortar between stones"
     return expanded, f"expand: stones take the mortar between them, {filled / length:.2g} m wide on average"
 
