@@ -137,6 +137,15 @@ def test_what_is_wider_than_a_joint_stays_open() -> None:
     assert expand([box(0, 0, 0.2, 0.1), box(0.2, 0, 0.4, 0.1)], [], 0.02)[1] == note
 
 
+def test_what_stays_open_and_is_hardly_wider_than_a_joint_is_told() -> None:
+    """A joint that widens upwards from 10 to 30 mm, of which the upper half stays open, and two of 30 mm."""
+    wedge = np.array([(0.21, 0.0), (0.4, 0.0), (0.4, 0.2), (0.23, 0.2)])
+    assert "; a gap wider than 0.02 m stays open at (0.21" in expand([box(0, 0, 0.2, 0.2), wedge], [], 0.02)[1]
+    apart = [box(x, 0, x + 0.2, 0.2) for x in (0.0, 0.23, 0.46)]
+    assert "; 2 gaps wider than 0.02 m stay open, the largest at (0." in expand(apart, [], 0.02)[1]
+    assert "open" not in expand(apart, [], 0.03)[1]
+
+
 def test_drawings_are_expanded_too(tmp_path: Path) -> None:
     """In units of their own, and then healed; the ground of a drawing stays where it is."""
     dxf(tmp_path / "wall.dxf", closed([[tuple(1000 * corner) for corner in brick] for brick in bricks(MORTAR)]))

@@ -47,7 +47,7 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
     expanded : list of (n, 2) float
         Outlines of the stones in their order, neighbours with the same line between them.
     note
-        How wide joints are on average.
+        How wide joints are on average, and where gaps are left that are hardly wider than joints.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
         if cell.is_empty or cell.interiors or cell.area < drawn[k].area / 2:
             raise SceneError(KEY, _unfit(names[k], k, drawn, ground, bool(cell.interiors)), width)
     expanded = [np.array(shapely.geometry.polygon.orient(cell).exterior.coords)[:-1] + origin for cell in cells]
-    return expanded, _note(drawn, ground, whole, cells, grid)
+    return expanded, _note(drawn, ground, whole, cells, grid) + _left_open(ground, whole, width, origin, size)
 
 
 def _check(drawn: Any, names: Sequence[str], width: float) -> None:
@@ -107,6 +107,21 @@ def _note(drawn: Any, ground: Any, whole: Any, cells: Sequence[Any], grid: float
     return f"expand: stones take the mortar between them, {filled / length:.2g} m wide on average"
 
 
+def _left_open(ground: Any, whole: Any, width: float, origin: Array, size: float) -> str:
+    """Say where gaps are left that are up to twice as wide as joints; nothing where there are none."""
+    grid = GRID * width
+    shut = _closed(shapely.union(whole, ground, grid_size=grid), 2 * width)
+    known = shapely.union(whole, _closed(ground, 2 * width), grid_size=grid)
+    left = polygonal_parts(shapely.difference(shut, known, grid_size=grid))
+    gaps = sorted((gap for gap in left if gap.area > width**2), key=lambda gap: -float(gap.area))
+    if not gaps:
+        return ""
+    at = place(shapely.get_coordinates(shapely.point_on_surface(gaps[0]))[0] + origin, size)
+    if len(gaps) == 1:
+        return f"; a gap wider than {width:g} m stays open at {at}"
+    return f"; {len(gaps)} gaps wider than {width:g} m stay open, the largest at {at}"
+
+
 def _unfit(named: str, k: int, drawn: Any, ground: Any, around: bool) -> str:
     """Why a stone cannot be expanded: what it lies in, if it does, what it goes around, or that it comes apart."""
     shared = shapely.area(shapely.intersection(drawn, drawn[k]))
@@ -137,7 +152,8 @@ def _mortared(drawn: Any, ground: Any, width: float) -> Any:
 def _closed(shape: Any, width: float) -> Any:
     """A shape with its gaps up to a width."""
     grown = shapely.buffer(shape, width / 2, join_style="mitre")
-    return shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), shape, grid_size=GRID * width)
+    closed = shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), shape, grid_size=GRID * width)
+    return shapely.MultiPolygon(polygonal_parts(closed))  # without the lines that narrow parts become on the grid
 
 
 def _apart(drawn: Any, grid: float) -> Any:
