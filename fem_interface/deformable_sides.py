@@ -18,6 +18,7 @@ from typing import NamedTuple
 from runningbond.contacts.rigid_sides import angle, arc_on_arc, far_arcs, sharp_opening, turn_out, turned_by
 from runningbond.joints import compiled
 from runningbond.joints.frames import Frames, retell
+from runningbond.joints.law import OPENING_BEFORE
 from runningbond.scene import Array, Indices
 
 from .block_kernels import NodalTables, to_modes, to_nodes
@@ -322,6 +323,22 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
 @kernel
 def reframe_deformable(geometry: DeformableSides, frames: Frames, history: Array) -> None:
     """After `gather_deformable`, as `reframe_sharp` does."""
+    _reframe(geometry, frames, history, True)
+
+
+@kernel
+def reframe_open(geometry: DeformableSides, frames: Frames, history: Array) -> None:
+    """The same of points that are open alone, as across a crack.
+
+    Corners that are pressed into each other change sides with every tremor of their blocks, by next to nothing each
+    time; retold as often, a wall under a dead load never comes to rest.
+    """
+    _reframe(geometry, frames, history, False)
+
+
+@kernel
+def _reframe(geometry: DeformableSides, frames: Frames, history: Array, pressed_too: bool) -> None:
+    """Retell what points have been through whose corners have gone over to another side."""
     _, _, _, sides, ends, inwards, _, placed, _, touched = geometry
     (facets, arcs), (bore, plastic) = (placed.facets, placed.arcs), frames
     for k in range(bore.size):
@@ -329,6 +346,8 @@ def reframe_deformable(geometry: DeformableSides, frames: Frames, history: Array
         if inwards[k] == 0.0 or bears == bore[k]:
             continue
         bore[k] = bears
+        if not (pressed_too or history[OPENING_BEFORE, k] > 0.0):
+            continue
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         if sides.radius[v] + sides.radius[w] > 0.0:
             continue

@@ -22,6 +22,7 @@ from .deformable_sides import (
     PlacedNodes,
     gather_deformable,
     reframe_deformable,
+    reframe_open,
     scatter_deformable,
 )
 from .finite_frequency import frequency_squared
@@ -185,7 +186,8 @@ class DeformableContacts:
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = frequency_squared(self.blocks, scaled, contacts, geometry, law, guess)
         kernels = gather_deformable, scatter_deformable
-        return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe_deformable)
+        reframe = reframe_deformable if self.blocks.scene.history else reframe_open
+        return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe)
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
         """A key of each contact and its number, two ``(n,)``: contacts are points."""
