@@ -192,9 +192,8 @@ class Wall:
         >>> Wall.outlines(arch, sides, thickness=0.2, density=2000.0, friction=0.8)
         <Wall 'outlines': 2 blocks, 2.3 × 0.4 m>
         """
-        given = {"outlines": outlines, "ground": ground, "thickness": thickness}
-        given |= {"units": None if units == "m" else units}
-        return cls._built("outlines", {**given, "expand": expand, "heal": heal}, keys)
+        given = {"outlines": outlines, "ground": ground, "thickness": thickness, "expand": expand, "heal": heal}
+        return cls._built("outlines", {**given, "units": None if units == "m" else units}, keys)
 
     @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":

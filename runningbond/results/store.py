@@ -88,23 +88,21 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     if outcome.path_columns:
         columns |= {"path": outcome.path, "path_columns": np.array(outcome.path_columns)}
     columns |= scene_to_arrays(scene) if scene else {}
-    _save(folder, RECORD, {"key": key}, {**outcome.summary(), "fall": outcome.fall}, columns)
+    _save(folder, RECORD, {"key": key, **outcome.summary(), "fall": outcome.fall}, columns)
 
 
 def save_response(summary: Mapping[str, Any], scene: Scene, folder: Path) -> None:
     """Write what is said of a response into a folder, made if missing; `load_scene` gives back the wall."""
-    _save(folder, RESPONSE_RECORD, {}, summary, scene_to_arrays(scene))
+    _save(folder, RESPONSE_RECORD, summary, scene_to_arrays(scene))
 
 
-def _save(
-    folder: Path, name: str, key: Mapping[str, str], said: Mapping[str, Any], columns: Mapping[str, NDArray[Any]]
-) -> None:
+def _save(folder: Path, name: str, said: Mapping[str, Any], columns: Mapping[str, NDArray[Any]]) -> None:
     """Write a record of a name, and the arrays that it vouches for."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **columns)
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
-    scalars = {**key, "arrays": arrays, **said}
+    scalars = {"arrays": arrays, **said}
     record = {**scalars, "sha256": _seal(scalars, content)}
     make_folder(folder)
     with locked(folder):  # or another writer would take these arrays for stale ones

@@ -22,7 +22,7 @@ SHRUNK = 0.1
 """How far stones stand back from what was drawn, so that none touch, in joints' largest widths."""
 
 MOST_SAMPLES = 2e6
-"""Of all stones together, for which memory and a minute or two suffice."""
+"""Of all stones together; a width that asks for more is a slip, and would take all memory."""
 
 SHARED = 0.1
 """Of a stone's area that is in another one: what is more is no inaccuracy of a survey."""

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from scipy.spatial import Voronoi
 
-from ..arrays import Array
+from ..arrays import Array, Indices
 
 SAMPLED = 1 / 6
 """How far samples on stones' sides are apart, in joints' largest widths: lines between their cells leave the middle by
@@ -38,13 +38,33 @@ End: TypeAlias = tuple[int, int]
 
 def middle_lines(inner: Any, whole: Any, width: float) -> list[Any]:
     """Lines of points as far from one stone as from another, within the wall and a little beyond, between junctions."""
+    at, owner = _samples(inner, width)
+    if not len(at):
+        return []
+    segments, pair = _between_cells(at, owner, width)
+    region = shapely.buffer(whole, width / 2)
+    shapely.prepare(region)
+    middle = segments.mean(axis=1)
+    there = shapely.contains_xy(region, middle[:, 0], middle[:, 1]) & (segments[:, 0] != segments[:, 1]).any(axis=1)
+    stones, of = np.unique(pair[there], axis=0, return_inverse=True)
+    order = np.argsort(of.ravel(), kind="stable")
+    pieces = shapely.linestrings(segments[there][order])
+    merged = shapely.line_merge(shapely.multilinestrings(pieces, indices=of.ravel()[order]))
+    lines, of = shapely.get_parts(merged, return_index=True)
+    return list(_in_the_middle(lines, inner[stones[of]]))
+
+
+def _samples(inner: Any, width: float) -> tuple[Array, Indices]:
+    """Points on the sides of stones that others are near, ``(n, 2)`` [m], and their stones ``(n,)``."""
     rings = shapely.boundary(shapely.segmentize(inner, SAMPLED * width))
     at, owner = shapely.get_coordinates(rings, return_index=True)
     near, stone = shapely.STRtree(inner).query(shapely.points(at), predicate="dwithin", distance=REACH * width)
     useful = np.unique(near[owner[near] != stone])
-    if not len(useful):
-        return []
-    at, owner = at[useful], owner[useful]
+    return at[useful], owner[useful]
+
+
+def _between_cells(at: Array, owner: Indices, width: float) -> tuple[Array, Indices]:
+    """Sides that Voronoi cells of two stones' samples share, ``(n, 2, 2)`` [m], and the stones ``(n, 2)``, in order."""
     low, high = at.min(axis=0), at.max(axis=0)
     far = float((high - low).max()) + width
     frame = (low + high) / 2 + 2 * far * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
@@ -54,18 +74,7 @@ def middle_lines(inner: Any, whole: Any, width: float) -> list[Any]:
     between = (pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & (ends >= 0).all(axis=1)
     # Where four samples lie on a circle, corners of their cells differ by rounding alone.
     segments = np.round(diagram.vertices[ends[between]] / far, 12) * far
-    pair = np.sort(pair[between], axis=1)
-    region = shapely.buffer(whole, width / 2)
-    shapely.prepare(region)
-    middle = segments.mean(axis=1)
-    there = shapely.contains_xy(region, middle[:, 0], middle[:, 1]) & (segments[:, 0] != segments[:, 1]).any(axis=1)
-    stones, of = np.unique(pair[there], axis=0, return_inverse=True)
-    order = np.argsort(of.ravel(), kind="stable")
-    merged = shapely.line_merge(
-        shapely.multilinestrings(shapely.linestrings(segments[there][order]), indices=of.ravel()[order])
-    )
-    lines, of = shapely.get_parts(merged, return_index=True)
-    return list(_in_the_middle(lines, inner[stones[of]]))
+    return segments, np.sort(pair[between], axis=1)
 
 
 def _in_the_middle(lines: Any, stones: Any) -> Any:
@@ -122,9 +131,7 @@ def _ends(lines: list[Any], width: float) -> dict[Junction, list[tuple[End, Arra
     return found
 
 
-def _partners(
-    ends: dict[Junction, list[tuple[End, Array]]],
-) -> dict[End, End]:
+def _partners(ends: dict[Junction, list[tuple[End, Array]]]) -> dict[End, End]:
     """The end with which each end of a line goes on, if it does, at junctions of three lines or more."""
     partner: dict[End, End] = {}
     for there in ends.values():
