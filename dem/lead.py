@@ -14,7 +14,7 @@ from .pushover import StaticState
 from .static_system import Control, StaticSystem, dot
 
 STEPS = 25
-"""Least number of steps in the longest leg of a way."""
+"""Least number of steps in the longest leg of a path."""
 
 GROWTH = 1.3
 """Growth of steps from one to the next."""
@@ -60,7 +60,7 @@ class StaticLead:
 
     @cached_property
     def joule(self) -> float:
-        """Work on the wall [J] of a force that counts as 1, on the way of 1."""
+        """Work on the wall [J] of a force that counts as 1, on a path of 1."""
         return -reaction_unit(self.scene) if self.settles else self.metre
 
     @cached_property
@@ -82,7 +82,7 @@ class StaticLead:
         return abs(dot(system.equilibrium.live, step[: system.freedoms]))
 
     def stops(self, share: float) -> Iterator[tuple[float, bool]]:
-        """Values to hold on the way, each with whether it is the first of a leg, in steps of that share's length."""
+        """Values to hold along the path, each with whether it begins a leg, in steps of that share's length."""
         at, goals = 0.0, self.goals
         longest = np.abs(np.diff(goals, prepend=0.0)).max() / STEPS
         for goal in goals:

@@ -3,12 +3,12 @@
 Each displacement is held until the wall rests, at once by Newton's method or after it has crept there
 (`relaxation`): where it snaps, it is followed to its next rest at that displacement. Steps begin with one of the
 wall's elastic size, after the dead load and after each reversal, and grow from there, so that friction is taken up
-along the way. The whole way is gone through again in steps half as long until its answer settles.
+along the path. The whole path is gone through again in steps half as long until its answer settles.
 
 The answer is the largest reaction of a beam's drive along its first move, or the share of the dead load that supports
-bear at the settlement asked for. It is one of a collapse if a mechanism has formed: if over the last tenth of the way
+bear at the settlement asked for. It is one of a collapse if a mechanism has formed: if over the last tenth of the path
 it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still sheds
-or takes up load, where the way ends, and the answer bounds the collapse from one side only. A wall at rest on a
+or takes up load, where the path ends, and the answer bounds the collapse from one side only. A wall at rest on a
 support that bears nothing any more bridges it.
 """
 
@@ -28,15 +28,15 @@ from .pushover import NOISE, LoadPath, StaticState, state_of
 from .relaxation import Rest
 
 RUNS = 4
-"""Runs, each in steps half as long as those before, after which a way is left undecided."""
+"""Runs, each in steps half as long as those before, after which a path is left undecided."""
 
 HALVINGS = 20
 """Steps to the fall of a wall from its last rest, each half as long as the last one."""
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
-    """A run along a way: its states at rest, the dead load's first, and what stopped it before the end."""
+class StaticTraverse:
+    """One traverse of the path: its states at rest, the dead load's first, and what stopped it before the end."""
 
     states: list[StaticState]
     stopped: Rest | None = None
@@ -48,21 +48,21 @@ class Run:
         return self.stopped is not None and self.stopped.verdict == "fall"
 
 
-def _run(path: LoadPath, lead: StaticLead, share: float) -> Run:
+def _run(path: LoadPath, lead: StaticLead, share: float) -> StaticTraverse:
     states = [path.rests[0]]
     for value, turns in lead.stops(share):
         result = _hold(path, lead, states, value, turns)
         if result.verdict == "fall":
-            return _closer(path, lead, Run(states, result, value), turns)
+            return _closer(path, lead, StaticTraverse(states, result, value), turns)
         if result.verdict == "undecided":
-            return Run(states, result, value)
+            return StaticTraverse(states, result, value)
         states.append(state_of(path.system, result))
         path.past = states[1:]
-    return Run(states, None, value)
+    return StaticTraverse(states, None, value)
 
 
 def _hold(path: LoadPath, lead: StaticLead, states: list[StaticState], value: float, turns: bool) -> Rest:
-    """Hold a value after some states, the first one of a leg where the way `turns`, until the wall rests or falls."""
+    """Hold a value after some states, the first one of a leg where the path `turns`, until the wall rests or falls."""
     now = states[-1]
     if not turns:
         guess = lead.onward(states[-2], now, value)
@@ -71,7 +71,7 @@ def _hold(path: LoadPath, lead: StaticLead, states: list[StaticState], value: fl
     return path.hold(lead.elastically(now, value), now.plastic_slip, lead.control(value))
 
 
-def _closer(path: LoadPath, lead: StaticLead, run: Run, turns: bool) -> Run:
+def _closer(path: LoadPath, lead: StaticLead, run: StaticTraverse, turns: bool) -> StaticTraverse:
     """A run that ended in a fall, with the states between its last rest and there."""
     states, fall, aim = [*run.states], run.stopped, run.aim
     for _ in range(HALVINGS):
@@ -84,7 +84,7 @@ def _closer(path: LoadPath, lead: StaticLead, run: Run, turns: bool) -> Run:
         else:
             states.append(state_of(path.system, result))
             turns = False
-    return Run(states, fall, aim)
+    return StaticTraverse(states, fall, aim)
 
 
 def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: float) -> Outcome:
@@ -102,15 +102,15 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
         Load, in units of `Equilibrium`, that the first elastic step is worth.
     """
     lead = StaticLead(path.system, path.rests[0], first_step)
-    runs: list[Run] = []
+    runs: list[StaticTraverse] = []
     answers: list[float] = []
     for k in range(RUNS):
         path.past = []
         try:
             run = _run(path, lead, 0.5**k)
         except KeyboardInterrupt:
-            so_far = Run([path.rests[0], *path.past])
-            return replace(_arrays(outcome, lead, so_far), message="no answer: interrupted, this is the way so far")
+            so_far = StaticTraverse([path.rests[0], *path.past])
+            return replace(_arrays(outcome, lead, so_far), message="no answer: interrupted, this is the path so far")
         if runs and run.stopped and not run.fell:  # out of budget
             break
         runs.append(run)
@@ -134,7 +134,7 @@ def _least(lead: StaticLead) -> float:
     return LITTLE if lead.settles else NOISE * lead.system.equilibrium.live_unit
 
 
-def _arrays(outcome: Outcome, lead: StaticLead, run: Run) -> Outcome:
+def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
     """Curve, forces at the answer and motion there: of a settlement the whole shape, of a drive how it moves."""
     system, states = lead.system, run.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
@@ -159,11 +159,13 @@ def _arrays(outcome: Outcome, lead: StaticLead, run: Run) -> Outcome:
     )
 
 
-def _judge(outcome: Outcome, lead: StaticLead, runs: list[Run], answers: list[float], tolerance: float) -> Outcome:
+def _judge(
+    outcome: Outcome, lead: StaticLead, runs: list[StaticTraverse], answers: list[float], tolerance: float
+) -> Outcome:
     """Verdict on some runs."""
     run, (lower, upper) = runs[-1], (min(answers[-2:]), max(answers[-2:]))
     at = f"{lead.metre * abs(run.aim):.4g} m"
-    what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
+    what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its path"
     what += f", in {len(run.states) - 1} steps" + (f" and in {len(runs[-2].states) - 1}" if len(runs) > 1 else "")
     what += "; small displacements" + _notes(lead, outcome)
     falls, changes = shedding(outcome.curve) if lead.settles else (False, "")

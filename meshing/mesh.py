@@ -7,7 +7,7 @@ import numpy as np
 from runningbond.scene import Array, Indices, Scene, SceneError, frozen
 from runningbond.scene.ranges import whole
 
-from .outline import Outlines, outlines
+from .outline import NodeOutlines, outlines
 from .shapes import shape_of_blocks, triangulate
 
 MOST_TRIANGLES = 10_000_000
@@ -111,7 +111,7 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     )
 
 
-def _interfaces(scene: Scene, outline: Outlines, first_node: Indices) -> tuple[Indices, Indices]:
+def _interfaces(scene: Scene, outline: NodeOutlines, first_node: Indices) -> tuple[Indices, Indices]:
     """Nodes of the joint elements ``(ne, 4)`` and the joint of each ``(ne,)``."""
     joint = np.repeat(np.arange(len(scene.joints)), outline.divisions)
     step = _runs(np.zeros_like(outline.divisions), outline.divisions)

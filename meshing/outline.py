@@ -13,7 +13,7 @@ from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Scene
 
 
 @dataclass(frozen=True, eq=False)
-class Outlines:
+class NodeOutlines:
     """Nodes on the outlines of all blocks, counter-clockwise and one block after another.
 
     Parameters
@@ -42,7 +42,7 @@ class Outlines:
         return np.diff(self.first)
 
 
-def outlines(scene: Scene, cells: int) -> Outlines:
+def outlines(scene: Scene, cells: int) -> NodeOutlines:
     """Lay nodes on the outlines of all blocks.
 
     Parameters
@@ -94,7 +94,7 @@ def outlines(scene: Scene, cells: int) -> Outlines:
     return _turned(points, corner, first, divisions, start.reshape(-1, 2))
 
 
-def _turned(points: Array, corner: Mask, first: Indices, divisions: Indices, start: Indices) -> Outlines:
+def _turned(points: Array, corner: Mask, first: Indices, divisions: Indices, start: Indices) -> NodeOutlines:
     """Outlines that all begin at the corresponding corner, however the blocks were drawn."""
     count = np.diff(first)
     block = np.repeat(np.arange(len(count)), count)
@@ -108,7 +108,7 @@ def _turned(points: Array, corner: Mask, first: Indices, divisions: Indices, sta
     new = np.empty_like(points), np.empty_like(corner)
     place = first[block] + turned(np.arange(len(points)))
     new[0][place], new[1][place] = points, corner
-    return Outlines(*new, first, divisions, turned(start))
+    return NodeOutlines(*new, first, divisions, turned(start))
 
 
 def _target(scene: Scene, cells: int, block: Indices, along: Array) -> Array:

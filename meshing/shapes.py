@@ -12,7 +12,7 @@ import numpy as np
 
 from runningbond.scene import Array, Indices, Mask
 
-from .outline import Outlines
+from .outline import NodeOutlines
 from .session import gmsh_session
 
 SAME = 1e-9
@@ -41,7 +41,7 @@ class Shape:
     triangles: Indices
 
 
-def shape_of_blocks(outline: Outlines) -> tuple[Indices, Indices]:
+def shape_of_blocks(outline: NodeOutlines) -> tuple[Indices, Indices]:
     """Sort blocks by shape.
 
     Returns
@@ -67,7 +67,7 @@ def shape_of_blocks(outline: Outlines) -> tuple[Indices, Indices]:
     return shape, example
 
 
-def triangulate(outline: Outlines, blocks: Indices) -> list[Shape]:
+def triangulate(outline: NodeOutlines, blocks: Indices) -> list[Shape]:
     """Triangulate some blocks with gmsh, which adds no node on their outlines."""
     with gmsh_session() as gmsh:
         gmsh.option.setNumber("Geometry.AutoCoherence", 0)

@@ -4,7 +4,7 @@ import json as to_json
 from dataclasses import replace
 from typing import Any
 
-from runningbond.compare.advice import TOLERANCE, Advice, Rung
+from runningbond.compare.advice import TOLERANCE, Advice, AdviceRung
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import bracket
@@ -52,7 +52,7 @@ def advise(
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
-def _rung_line(rung: Rung) -> str:
+def _rung_line(rung: AdviceRung) -> str:
     """The result of a rung, the cost so far, what follows from it, and the next rung with its cost."""
     result = "–"
     if rung.outcome is not None:
@@ -81,7 +81,7 @@ def _as_json(advice: Advice, outcome: Outcome) -> str:
     )
 
 
-def _rung_json(rung: Rung) -> dict[str, Any]:
+def _rung_json(rung: AdviceRung) -> dict[str, Any]:
     keys = ("status", "multiplier", "lower", "upper", "dofs", "steps")
     next_seconds = None if rung.next_cost is None else rung.next_cost.seconds
     said = {"seconds": rung.seconds, "reason": rung.next.reason, "next": rung.next.name, "next_seconds": next_seconds}

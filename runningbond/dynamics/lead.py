@@ -26,7 +26,7 @@ SEEN = 10
 """Rows between two looks of an observer, and over which a mechanism is drawn."""
 
 STAGES = 20
-"""Rests on the way of a settlement."""
+"""Rests along the path of a settlement."""
 
 WINDOW = 25
 """Least steps between two changes of the speed of supports: each is a knock, and knocks shake friction loose."""
@@ -36,16 +36,16 @@ LOSS = 0.8
 """Share of the largest force to which it falls where the wall has failed, and its mechanism is drawn."""
 
 LAST = 0.1
-"""Part of a way over which a force that has formed a mechanism no longer changes."""
+"""Part of a path over which a force that has formed a mechanism no longer changes."""
 
 STILL = 1e-6
 """Change of a share that counts as none, beside the tolerance's part of all its change."""
 
 SAME = 1e-9
-"""Part of a way by which rounding may set places apart that are one."""
+"""Part of a path by which rounding may set places apart that are one."""
 
 ASIDE = 0.05
-"""Part of a way to one side that still counts as coming back to rest, if it is to the other side."""
+"""Part of a path to one side that still counts as coming back to rest, if it is to the other side."""
 
 COME_DOWN = 0.5
 """Sizes of a block by which all of the dead load has come down, or what would do as much work, once a wall falls."""
@@ -61,11 +61,11 @@ LITTLE = 0.01
 
 TOE = "broken toe [m]"
 BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]", TOE)
-"""What else is known of each row of a beam's way."""
+"""What else is known of each row of a beam's path."""
 
 
-class WayRow(NamedTuple):
-    """What was seen at one place of a way."""
+class TraverseRow(NamedTuple):
+    """What was seen at one place of the path."""
 
     moved: float  # displacement [m], or part of a settlement
     force: float  # reaction [N], or share of the dead load
@@ -76,13 +76,13 @@ class WayRow(NamedTuple):
 
 
 @dataclass
-class Way:
-    """What was seen on a way that was gone through once, from a state at rest."""
+class Traverse:
+    """One traverse of the path from a state at rest: what was seen, and the answer."""
 
     best: State  # where the answer is
     motion: Array  # (nd,) how the wall moved where it had come farthest
     moves: bool  # whether forces are means of a motion, and not of rests
-    rows: list[WayRow] = field(default_factory=list)
+    rows: list[TraverseRow] = field(default_factory=list)
     verdict: Verdict = "stable"
     unseen: float = 0.0  # what the answer may be larger, for means over windows take from peaks
     inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
@@ -90,7 +90,7 @@ class Way:
     gone: float = 0.0  # how far the blocks that go farthest have gone in each row of a push, in all [m]
     elsewhere: tuple[Indices, Array, Array] | None = None  # where its displacements are, if the control point stays
     lasting: float = 0.0  # largest mean force over a whole row of a motion
-    resolved: bool = True  # whether means over ever shorter parts of its way add next to nothing to the answer
+    resolved: bool = True  # whether means over ever shorter parts of its path add next to nothing to the answer
 
     @property
     def curve(self) -> Array:
@@ -99,7 +99,7 @@ class Way:
 
     @property
     def answer(self) -> float:
-        """The force at the end of a way from rest to rest, the largest one of a motion."""
+        """The force at the end of a path from rest to rest, the largest one of a motion."""
         return float(self.curve[:, 1].max() if self.moves else self.curve[-1, 1])
 
     def calm(self) -> None:
@@ -123,8 +123,8 @@ class Lead:
 
     @property
     def answer(self) -> str:
-        """What the answer of a way is."""
-        share, reaction = "share of the dead load on the support", "largest reaction of the drive along its way"
+        """What the answer of a traverse is."""
+        share, reaction = "share of the dead load on the support", "largest reaction of the drive along its path"
         return share if self.settles else reaction
 
     @property
@@ -171,8 +171,8 @@ class Lead:
         """Move supports, in place; the share of the dead load that they bear meanwhile."""
         return self.run.carry(state, speed, steps, given=given) / self.run.system.carried.work
 
-    def note(self, way: Way, state: State, moved: float, force: float) -> None:
-        """Add a row of a state to a way."""
+    def note(self, traverse: Traverse, state: State, moved: float, force: float) -> None:
+        """Add a row of a state to a traverse."""
         run, beam = self.run, tuple[float, ...]()
         small = run.system.contacts is None
         carried = np.column_stack(run.forces(state)) if small else run.resultants(state, force)
@@ -181,7 +181,7 @@ class Lead:
             beam = rotation, uplift, run.ledger(state).friction, self.broken_toe(state, moved)
         dead = run.dead_work(state)
         tie = run.system.ties.force(state.motion, state.stretch)
-        way.rows.append(WayRow(moved, force, carried, tie, (dead, state.external - dead), beam))
+        traverse.rows.append(TraverseRow(moved, force, carried, tie, (dead, state.external - dead), beam))
 
     def broken_toe(self, state: State, moved: float) -> float:
         """How far a toe has been crushed, or blocks have split there [m], whichever is more.
@@ -209,21 +209,21 @@ class Lead:
         low, width = y <= (bottom + top) / 2 + reach, (right - left) / 4 + reach
         return low & (x <= left + width), low & (x >= right - width)
 
-    def go(self, way: Way, speed: float) -> State:
-        """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
+    def go(self, traverse: Traverse, speed: float) -> State:
+        """Go through the path, at a largest speed [m/s, or settlements/s], to the state at its end."""
         state = self.start.copy()
-        (self._settle if self.settles else self._drive)(way, state, speed)
+        (self._settle if self.settles else self._drive)(traverse, state, speed)
         return state
 
-    def after(self, way: Way) -> "Lead":
-        """How it is led the next time, after a way."""
+    def after(self, traverse: Traverse) -> "Lead":
+        """How it is led the next time, after a traverse."""
         return self
 
-    def kept(self, ways: list[Way]) -> Way:
-        """What is kept of ways of which the last was interrupted."""
-        return ways[-1]
+    def kept(self, traverses: list[Traverse]) -> Traverse:
+        """What is kept of traverses of which the last was interrupted."""
+        return traverses[-1]
 
-    def apart(self, fast: Way, slow: Way) -> float:
+    def apart(self, fast: Traverse, slow: Traverse) -> float:
         """How far curves of two speeds are apart, relative to the answer, where they are told beside it."""
         return 0.0
 
@@ -268,17 +268,17 @@ class Lead:
         last = np.cumsum(np.bincount(joint, minlength=len(start)))
         return np.asarray(own[order[np.column_stack([np.append(0, last[:-1]), last - 1])]])
 
-    def _drive(self, way: Way, state: State, speed: float) -> None:
+    def _drive(self, traverse: Traverse, state: State, speed: float) -> None:
         run, at = self.run, 0.0
         self.observe(run, state, 0.0)
         # At finite displacements blocks knock at one another all along, which means over rows leave out.
         knock = run.system.contacts is not None
-        self.note(way, state, 0.0, 0.0)
+        self.note(traverse, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
         given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]
-        peaks = Peaks(way.best, self.longest / (ROWS * speed * run.dt))
+        peaks = Peaks(traverse.best, self.longest / (ROWS * speed * run.dt))
         for goal in self.goals.tolist():
-            if goal == at or way.verdict != "stable":
+            if goal == at or traverse.verdict != "stable":
                 continue
             n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
             pace = _pace(n, peaks.windows)
@@ -291,35 +291,35 @@ class Lead:
                     force = run.drive(state, top * part, length, given=given)
                     force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
                     inertia = 0.0 if knock and k >= SOFT else (self._gathered(state) - gathered) / (length * run.dt)
-                    peaks.see(force, inertia, length, state, len(way.rows) + (window > peaks.windows // 2))
+                    peaks.see(force, inertia, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                     if window == peaks.windows // 2:
                         middle = state.copy()
                 # What a row's forces are the mean of is there in its middle.
-                self.note(way, middle, self.moved(middle), peaks.mean(peaks.windows))
+                self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
                 seen.append((middle.motion, self.crushed(middle)))
                 if (k + 1) % SEEN == 0:
-                    self.observe(run, state, way.rows[-1].force)
+                    self.observe(run, state, traverse.rows[-1].force)
                 if self.falls(state):
-                    way.verdict = "collapse"
+                    traverse.verdict = "collapse"
                     break
             at = goal
-            self.note(way, state, self.moved(state), way.rows[-1].force)
+            self.note(traverse, state, self.moved(state), traverse.rows[-1].force)
             seen.append((state.motion.copy(), self.crushed(state)))
-        self.conclude(way, peaks, seen)
+        self.conclude(traverse, peaks, seen)
 
-    def conclude(self, way: Way, peaks: Peaks, seen: list[tuple[Array, Array]]) -> None:
-        """Take the answer of a way from its peaks, and its mechanism from motions and crushing `seen` at its rows."""
-        way.calm()
-        peak, between, way.unseen, way.resolved = peaks.resolved()
-        way.best, way.inertia, way.lasting = peak.state, peak.inertia, peaks.longest.force
+    def conclude(self, traverse: Traverse, peaks: Peaks, seen: list[tuple[Array, Array]]) -> None:
+        """Take the answer of a traverse from its peaks, its mechanism from motions and crushing `seen` at its rows."""
+        traverse.calm()
+        peak, between, traverse.unseen, traverse.resolved = peaks.resolved()
+        traverse.best, traverse.inertia, traverse.lasting = peak.state, peak.inertia, peaks.longest.force
         if between:
-            self.note(way, peak.state, self.moved(peak.state), peak.force)
-            way.rows.insert(peak.row, way.rows.pop())
+            self.note(traverse, peak.state, self.moved(peak.state), peak.force)
+            traverse.rows.insert(peak.row, traverse.rows.pop())
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
-        row = self.failing(way.curve)
-        way.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
+        row = self.failing(traverse.curve)
+        traverse.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
         # The most so far: joints that have parted since have been crushed too.
-        way.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)
+        traverse.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)
 
     def falls(self, state: State) -> bool:
         """Whether the dead load has come down far, and most of its work is in motion: what is led does little of any.
@@ -350,11 +350,11 @@ class Lead:
         """How far what is driven has gone since the rest under the dead load [m]."""
         return self.run.driven(state) - self.run.driven(self.start)
 
-    def _settle(self, way: Way, state: State, speed: float) -> None:
+    def _settle(self, traverse: Traverse, state: State, speed: float) -> None:
         run, given = self.run, self.run.given(state)
         motion, far, _ = run.system.carried
-        self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
-        self.observe(run, state, way.rows[-1].force)
+        self.note(traverse, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
+        self.observe(run, state, traverse.rows[-1].force)
         rows = 2 * SOFT
         stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
         windows = windows_of_stage(stage)
@@ -368,18 +368,18 @@ class Lead:
             moving = [self.share(state, top * part, steps, given) for part in pace.tolist()]
             state.velocity[motion != 0] = 0.0
             rest = self.criteria.rest if number == len(stages) else NEARLY_AT_REST
-            way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
-            fell = way.verdict != "stable"
+            traverse.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
+            fell = traverse.verdict != "stable"
             # Of a fall through finite displacements the last rest is shown, for blocks may have turned by any angle.
             if not fell or run.system.contacts is None:
-                way.motion, way.crushed = state.motion - self.start.motion, self.crushed(state)
+                traverse.motion, traverse.crushed = state.motion - self.start.motion, self.crushed(state)
             if fell:
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
             # In the end supports hardly move. What changes as they stop is friction that motion has shaken loose.
-            way.unseen = way.inertia = abs(bears - float(np.mean(moving[-max(1, windows // 4) :])))
-            self.note(way, state, far * settled, bears)
-            way.best = state.copy()
+            traverse.unseen = traverse.inertia = abs(bears - float(np.mean(moving[-max(1, windows // 4) :])))
+            self.note(traverse, state, far * settled, bears)
+            traverse.best = state.copy()
             self.observe(run, state, bears)
 
 
@@ -390,7 +390,7 @@ def windows_of_stage(steps: float) -> int:
 
 
 def goes_both_ways(goals: Array) -> bool:
-    """Whether a way from zero to some goals ``(n,)``, one after the other, goes to both sides.
+    """Whether a path from zero to some goals ``(n,)``, one after the other, goes to both sides.
 
     It does not where it comes back to where it began, if a little beyond.
     """
@@ -399,14 +399,14 @@ def goes_both_ways(goals: Array) -> bool:
 
 
 def last_leg(curve: Array) -> Array:
-    """The rows of a way's curve ``(n, 2)`` since it last turned round, its displacement counted from there."""
-    ways = np.sign(np.diff(curve[:, 0]))
-    start = int(np.flatnonzero(ways != ways[-1])[-1]) + 1 if (ways != ways[-1:]).any() else 0
+    """The rows of a path's curve ``(n, 2)`` since it last turned round, its displacement counted from there."""
+    senses = np.sign(np.diff(curve[:, 0]))
+    start = int(np.flatnonzero(senses != senses[-1])[-1]) + 1 if (senses != senses[-1:]).any() else 0
     return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
 
 
 def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0, still: float = 0.0) -> bool:
-    """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of a way.
+    """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of a path.
 
     Parameters
     ----------
@@ -415,7 +415,7 @@ def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0,
     tolerance
         Part of the force by which it may still grow; of all its change, by which a share may still change.
     settles
-        Whether supports are led. An elastic wall sheds load too: of a short way hardly any, and the same all along.
+        Whether supports are led. An elastic wall sheds load too: of a short path hardly any, and the same all along.
     least
         Force below which growth need not be small.
     still
@@ -430,7 +430,7 @@ def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0,
 
 
 def shedding(curve: Array) -> tuple[bool, str]:
-    """Whether the share on a support falls where a way ends, and what that is called: it may be negative.
+    """Whether the share on a support falls where a path ends, and what that is called: it may be negative.
 
     Where it changes no more over the last part, by the whole leg.
     """

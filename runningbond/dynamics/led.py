@@ -1,10 +1,10 @@
 """Walls that are led: a beam along a path at a slow speed, supports from rest to rest, or all blocks by the live load.
 
-The whole way is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
+The whole path is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
 along its first move, the share of the dead load that supports bear at the settlement asked for, or the largest
 multiplier of a live load that pushes. It is one of a collapse if a mechanism has formed: if over the last tenth of the
-way it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still
-sheds or takes up load, where the way ends. A wall at rest on a support that bears nothing any more bridges it.
+path it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still
+sheds or takes up load, where the path ends. A wall at rest on a support that bears nothing any more bridges it.
 """
 
 from collections.abc import Callable
@@ -21,13 +21,13 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, Lead, Way, WayRow, formed, goes_both_ways, shedding
+from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, shedding
 from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
 LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
 """Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
-at small displacements, and at finite ones, whose ways are longer.
+at small displacements, and at finite ones, whose paths are longer.
 """
 
 LOCKED = 20.0
@@ -58,10 +58,10 @@ def collapse_of_led(
     Returns
     -------
     Outcome
-        `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
+        `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower`
         and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
-    ways, locks = list[Way](), cache(is_self_locking)
+    traverses, locks = list[Traverse](), cache(is_self_locking)
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
         loaded = put_on_dead_load(resting, criteria, observe)
@@ -78,31 +78,31 @@ def collapse_of_led(
         if not scene.is_led:
             lead = _push(lead, distance, LOCKED if locks() else np.inf)
         for duration in _durations(lead, loaded.rest):
-            ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
-            last = lead.go(way, lead.longest / duration)
-            before, lead = lead, lead.after(way)
+            traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), not lead.settles))
+            last = lead.go(traverse, lead.longest / duration)
+            before, lead = lead, lead.after(traverse)
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
-            if way.verdict == "undecided" and lead is before:
+            if traverse.verdict == "undecided" and lead is before:
                 break
-            if _settled(lead, ways, tolerance) and not _rate(scene):
+            if _settled(lead, traverses, tolerance) and not _rate(scene):
                 break
     except KeyboardInterrupt:
-        if ways:
-            ways[-1].calm()
-            way = lead.kept(ways)
-            outcome = _path(outcome, scene, run, points, way) if way.rows else outcome
-        return replace(outcome, message="interrupted: the way so far")
+        if traverses:
+            traverses[-1].calm()
+            traverse = lead.kept(traverses)
+            outcome = _path(outcome, scene, run, points, traverse) if traverse.rows else outcome
+        return replace(outcome, message="interrupted: the path so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     # What a support hardly moves does hardly any work. The dead load came on at once, in a motion of no account.
-    # Where the way comes back, works nearly cancel: what counts is how far they went.
-    gone = float(np.ptp([row.works for row in way.rows], axis=0).sum()) if way.rows else 0.0
+    # Where the path comes back, works nearly cancel: what counts is how far they went.
+    gone = float(np.ptp([row.works for row in traverse.rows], axis=0).sum()) if traverse.rows else 0.0
     lost = run.unaccounted(last, max(gone, lead.least_work), since=state)
-    outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
+    outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
-    outcome = _judge(outcome, lead, ways, tolerance)
-    outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(way.best)))
+    outcome = _judge(outcome, lead, traverses, tolerance)
+    outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(traverse.best)))
     if outcome.status == "undecided" and outcome.upper is None and not lead.settles and locks():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
@@ -137,14 +137,14 @@ def _durations(lead: Lead, rest: int) -> list[float]:
     return [steps * lead.run.dt * 2**k for k in range(runs)]
 
 
-def _bracket(ways: list[Way]) -> tuple[float, float]:
+def _bracket(traverses: list[Traverse]) -> tuple[float, float]:
     """The answer as far on either side of the last one as that lies from the one at twice its speed.
 
     What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length. A
     force that sets the wall in motion is no less, in the end, than without what does. One that shakes is the larger the
     shorter the windows: where those do not settle what the peak is, the lower end is that of means over whole rows.
     """
-    fast, slow = ways[-2:]
+    fast, slow = traverses[-2:]
     change = abs(fast.answer - slow.answer)
     lower = slow.answer - max(change, slow.inertia)
     if not slow.resolved:
@@ -152,61 +152,61 @@ def _bracket(ways: list[Way]) -> tuple[float, float]:
     return lower, slow.answer + change + slow.unseen
 
 
-def _spread(lead: Lead, ways: list[Way]) -> float:
+def _spread(lead: Lead, traverses: list[Traverse]) -> float:
     """Width of the bracket, relative to its larger end."""
-    if len(ways) < 2:
+    if len(traverses) < 2:
         return np.inf
-    lower, upper = _bracket(ways)
+    lower, upper = _bracket(traverses)
     return (upper - lower) / max(-lower, upper, lead.least) if upper > lower else 0.0
 
 
-def _settled(lead: Lead, ways: list[Way], tolerance: float) -> bool:
-    """Whether half the speed would hardly change the answer, nor what else is told, of ways that came to their end."""
-    ended = all(way.verdict != "undecided" for way in ways[-2:])
-    return ended and _spread(lead, ways) <= tolerance and lead.apart(*ways[-2:]) <= tolerance
+def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
+    """Whether half the speed would hardly change the answer, nor what else is told, of complete traverses."""
+    ended = all(traverse.verdict != "undecided" for traverse in traverses[-2:])
+    return ended and _spread(lead, traverses) <= tolerance and lead.apart(*traverses[-2:]) <= tolerance
 
 
-def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
+def _arrays(outcome: Outcome, lead: Lead, traverse: Traverse, point_order: Indices) -> Outcome:
     """Forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
     run = lead.run
-    force, motion = run.at_joints(way.best)[2:4].T[point_order], run.system.motion_of_blocks(way.motion)
+    force, motion = run.at_joints(traverse.best)[2:4].T[point_order], run.system.motion_of_blocks(traverse.motion)
     if motion.any():
-        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion), crushed=way.crushed)
+        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion), crushed=traverse.crushed)
     return replace(outcome, force=force)
 
 
-def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
-    """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
+def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, traverse: Traverse) -> Outcome:
+    """Curve, reactions and works of a traverse; its states rest, or are of a motion, whose inertia is left out."""
     supports = Supports(scene, points, run.system.owner)
-    _, force, carried, tie, works, beam = map(np.array, zip(*way.rows, strict=True))
+    _, force, carried, tie, works, beam = map(np.array, zip(*traverse.rows, strict=True))
     columns = (*supports.columns, *WORKS, AT_REST)
     if run.system.contacts is not None:
         held = carried[:, supports.block]
         held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
-        path = np.column_stack([-held.reshape(len(held), -1), tie, works, np.full(len(held), not way.moves)])
+        path = np.column_stack([-held.reshape(len(held), -1), tie, works, np.full(len(held), not traverse.moves)])
     else:
-        loads = force if way.moves else np.zeros(len(force))
+        loads = force if traverse.moves else np.zeros(len(force))
         path = supports.path(carried, tie, loads, works)["path"]
-        path[:, -1] = not way.moves
+        path[:, -1] = not traverse.moves
     if beam.size:
         path, columns = np.column_stack([path[:, :-1], beam, path[:, -1]]), (*columns[:-1], *BEAM, AT_REST)
-    return replace(outcome, curve=way.curve, path=path, path_columns=columns)
+    return replace(outcome, curve=traverse.curve, path=path, path_columns=columns)
 
 
-def _has_come_free(lead: Lead, row: WayRow) -> bool:
-    """Whether the supports that move bear nothing at a place of a way."""
+def _has_come_free(lead: Lead, row: TraverseRow) -> bool:
+    """Whether the supports that move bear nothing at a place of a path."""
     if lead.run.system.contacts is None:
         return Supports(lead.scene, lead.points, lead.run.system.owner).have_come_free(row.carried, row.tie)
     borne = np.hypot(*row.carried[:, :2].T)
     return bool(borne[lead.scene.support_motion.any(axis=1)].max() <= UNFELT * borne.max())
 
 
-def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> Outcome:
-    """Verdict on some ways, of which the last one is drawn."""
-    way = ways[-1]
+def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: float) -> Outcome:
+    """Verdict on some traverses, of which the last one is drawn."""
+    traverse = traverses[-1]
     what = lead.answer
     what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
-    if len(ways) > 1 and (apart := lead.apart(*ways[-2:])):
+    if len(traverses) > 1 and (apart := lead.apart(*traverses[-2:])):
         what += f", whose curves are {100 * apart:.2g} % of it apart until half of it is left"
     other = -float(outcome.curve[:, 1].min())
     if goes_both_ways(lead.goals) and other > 0 and not lead.settles:
@@ -217,24 +217,26 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
         what += ", sharp corners: with a joint.inset they do not slip past each other"
     what = joined(what, lead.before(outcome.curve), lead.read_at)
     at = f"{abs(outcome.curve[-1, 0]) if lead.settles else np.abs(outcome.curve[:, 0]).max():.4g} m"
-    if way.verdict == "undecided" or len(ways) < 2:
+    if traverse.verdict == "undecided" or len(traverses) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
-    least, most = _bracket(ways)
-    fell = way.verdict == "collapse"
-    if lead.settles and not fell and _has_come_free(lead, way.rows[-1]):
+    least, most = _bracket(traverses)
+    fell = traverse.verdict == "collapse"
+    if lead.settles and not fell and _has_come_free(lead, traverse.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
-    if not fell and not formed(lead.onward(outcome.curve), tolerance, settles=lead.settles, still=way.answer - least):
+    if not fell and not formed(
+        lead.onward(outcome.curve), tolerance, settles=lead.settles, still=traverse.answer - least
+    ):
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
         still = f"{still} at the displacement asked for, {at}"
-        if way.answer > lead.most:
+        if traverse.answer > lead.most:
             still = f"the wall bears more than {LOCKED:g} times its largest dead load"
-        message = f"no answer: {still}: {number(way.answer)}; {what}"
+        message = f"no answer: {still}: {number(traverse.answer)}; {what}"
         bounds = (None, most) if falls else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
-    if _spread(lead, ways) > tolerance and not _rate(lead.scene):
+    if _spread(lead, traverses) > tolerance and not _rate(lead.scene):
         why = joined("another speed changes it by more than the tolerance", lead.remedy(outcome.curve))
         return replace(outcome, message=f"no answer: {why}; {what}")
     fall = f"; {lead.fall(outcome.curve)}" if fell else ""
-    return replace(outcome, status="collapse", multiplier=way.answer, message=what + fall)
+    return replace(outcome, status="collapse", multiplier=traverse.answer, message=what + fall)

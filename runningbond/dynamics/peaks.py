@@ -1,8 +1,8 @@
-"""The largest force of a drive, from means over windows of its way that are as short as the peak asks for.
+"""The largest force of a drive, from means over windows of its path that are as short as the peak asks for.
 
-A force shakes, and is told by its mean over a part of the way. Such a mean takes from a peak the more the longer it is:
-of a wall that snaps after a hundredth of a row it leaves little. Means over ever shorter windows therefore stand side
-by side, and the longest are taken to which shorter ones add next to nothing.
+A force shakes, and is told by its mean over a part of the path. Such a mean takes from a peak the more the longer it
+is: of a wall that snaps after a hundredth of a row it leaves little. Means over ever shorter windows therefore stand
+side by side, and the longest are taken to which shorter ones add next to nothing.
 """
 
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ class Peak:
     state: State  # at the end of the window in the middle
     force: float = 0.0
     inertia: float = 0.0  # the largest of the three
-    row: int = 1  # the row of the way before which it was met
+    row: int = 1  # the row of the path before which it was met
     _last: list[tuple[float, float]] = field(default_factory=list)
     _before: State | None = None
 
@@ -46,7 +46,7 @@ class Peaks:
     Parameters
     ----------
     start
-        Where the way begins.
+        Where the path begins.
     steps
         Steps of a row, whole but for rounding.
     most

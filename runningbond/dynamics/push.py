@@ -14,7 +14,7 @@ import numpy as np
 from runningbond.results.outcome import number, two_digits
 from runningbond.scene import Array, Indices, Scene
 
-from .lead import LITTLE, LOSS, ROWS, SEEN, Lead, Way
+from .lead import LITTLE, LOSS, ROWS, SEEN, Lead, Traverse
 from .peaks import Peaks
 from .run import CALMING, MOVING, Run
 from .state import State
@@ -44,12 +44,14 @@ HALF = 0.5
 WINDOWS = 4
 """Most windows of a row whose mean multipliers are looked at: all blocks are pushed, and the push shakes with them."""
 
-
 EARLY = 0.01
-"""Part of a way before which a peak is told by the few short rows in which a push gathers speed."""
+"""Part of a path before which a peak is told by the few short rows in which a push gathers speed."""
+
+AT_ONCE = 1e-6
+"""Part of its distance by which a control point that stays moves as its springs relax."""
 
 STAYS = 0.01
-"""Part of the way of the blocks that go farthest by which a point that counts as staying where it is goes at most."""
+"""Part of the path of the blocks that go farthest by which a point that counts as staying where it is goes at most."""
 
 ControlPoint: TypeAlias = tuple[Indices, Array, Array]
 """Blocks ``(n,)``, point and direction ``(2,)`` of a displacement, as of `Scene.control_point`."""
@@ -76,8 +78,8 @@ class Push(Lead):
 
     @property
     def answer(self) -> str:
-        """What the answer of a way is."""
-        return "largest multiplier along the way"
+        """What the answer of a traverse is."""
+        return "largest multiplier along the path"
 
     @property
     def least(self) -> float:
@@ -122,17 +124,17 @@ class Push(Lead):
         where = self.scene.blocks.place(self.elsewhere[1])
         return f"displacements are read at {where}, for the control point of the first live load stays where it is"
 
-    def _read_where_it_moves(self, way: Way, motions: list[Array]) -> None:
-        """Read the displacements of a way at the control point, or elsewhere if that stays: from its rows' motions."""
-        way.elsewhere = self.elsewhere
-        if way.verdict == "stable" and self.elsewhere is None:
+    def _read_where_it_moves(self, traverse: Traverse, motions: list[Array]) -> None:
+        """Read the displacements of a traverse at the control point, or elsewhere if that stays, from its rows."""
+        traverse.elsewhere = self.elsewhere
+        if traverse.verdict == "stable" and self.elsewhere is None:
             return
         for place in (None, *filter(None, [self.elsewhere]), *self._others(motions[-1])):
             lead = replace(self, elsewhere=place)
             moved = [lead._control(motion) - lead._at_rest for motion in motions]
-            if np.abs(moved).max() > STAYS * way.gone:
-                way.elsewhere = place
-                way.rows[:] = [row._replace(moved=at) for row, at in zip(way.rows, moved, strict=True)]
+            if np.abs(moved).max() > STAYS * traverse.gone:
+                traverse.elsewhere = place
+                traverse.rows[:] = [row._replace(moved=at) for row, at in zip(traverse.rows, moved, strict=True)]
                 return
 
     def _others(self, motion: Array) -> Iterator[ControlPoint]:
@@ -153,28 +155,28 @@ class Push(Lead):
         couples = np.abs(moment) / self.scene.block_sizes[system.owner]
         return float(np.hypot(x, y).sum() or couples.sum() or 1.0)
 
-    def after(self, way: Way) -> Lead:
+    def after(self, traverse: Traverse) -> Lead:
         """Expect blocks to go as far the next time as they went before the wall fell, and a little farther.
 
         Where they went on without either end in sight, as far as the control point needs them to.
         """
-        lead = replace(self, elsewhere=way.elsewhere)
-        if way.verdict == "collapse" and way.gone:
-            return replace(lead, reach=self.longest * min(1.0, max(LESS, BEYOND * way.gone / self.longest)))
-        if way.verdict == "undecided":
-            came = abs(way.rows[-1].moved) / self.distance
-            return replace(lead, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
+        lead = replace(self, elsewhere=traverse.elsewhere)
+        if traverse.verdict == "collapse" and traverse.gone:
+            return replace(lead, reach=self.longest * min(1.0, max(LESS, BEYOND * traverse.gone / self.longest)))
+        if traverse.verdict == "undecided":
+            came = abs(traverse.rows[-1].moved) / self.distance
+            return replace(lead, reach=traverse.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
         return lead
 
-    def kept(self, ways: list[Way]) -> Way:
+    def kept(self, traverses: list[Traverse]) -> Traverse:
         """The last that was gone to its end, if one was: the others begin ever more slowly."""
-        return ways[-2] if len(ways) > 1 else ways[-1]
+        return traverses[-2] if len(traverses) > 1 else traverses[-1]
 
     def onward(self, curve: Array) -> Array:
         """The curve towards the side to which the control point goes in the end: other loads may push it back."""
         return curve * (np.sign(curve[-1, 0]) or 1.0, 1.0)
 
-    def apart(self, fast: Way, slow: Way) -> float:
+    def apart(self, fast: Traverse, slow: Traverse) -> float:
         """How far curves of two speeds are apart on the average until half of the answer is left, relative to it."""
         (at, force), (other, before) = self.onward(slow.curve).T, self.onward(fast.curve).T
         top = int(force.argmax())
@@ -199,7 +201,7 @@ class Push(Lead):
         return f"the multiplier had fallen from {peak} to {low} before"
 
     def remedy(self, curve: Array) -> str:
-        """Ask for a shorter way of a wall whose peak is told by a few rows at its beginning."""
+        """Ask for a shorter path of a wall whose peak is told by a few rows at its beginning."""
         peak = abs(curve[curve[:, 1].argmax(), 0])
         if peak > EARLY * np.abs(curve[:, 0]).max():
             return ""
@@ -210,16 +212,19 @@ class Push(Lead):
         (before, above), (after, below) = curve[-2:].tolist()
         if below > 0:
             return super().fall(curve)
-        return f"the multiplier falls to nothing at {before + (after - before) * above / (above - below):.4g} m"
+        brink = before + (after - before) * above / (above - below)
+        if abs(brink) < AT_ONCE * self.distance:
+            return "the multiplier falls to nothing while the control point stays where it is"
+        return f"the multiplier falls to nothing at {brink:.4g} m"
 
-    def go(self, way: Way, speed: float) -> State:
+    def go(self, traverse: Traverse, speed: float) -> State:
         """Push at a speed of the blocks that go farthest [m/s]; the state at the end."""
         run, state = self.run, self.start.copy()
         self.observe(run, state, 0.0)
-        self.note(way, state, 0.0, 0.0)
+        self.note(traverse, state, 0.0, 0.0)
         given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]
         row_steps = self.longest / (ROWS * speed * run.dt)
-        peaks = Peaks(way.best, row_steps, WINDOWS)
+        peaks = Peaks(traverse.best, row_steps, WINDOWS)
         steps = max(peaks.windows, round(row_steps))
         lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows).tolist()
         most = power = speed * self._load
@@ -227,26 +232,26 @@ class Push(Lead):
             before = state.motion.copy()
             for window, (part, length) in enumerate(zip(parts, lengths, strict=True), start=1):
                 multiplier = run.drive(state, part * power, length, given=given)
-                peaks.see(multiplier, 0.0, length, state, len(way.rows) + (window > peaks.windows // 2))
+                peaks.see(multiplier, 0.0, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                 if window == peaks.windows // 2:
                     middle = state.copy()
             # What a row's multiplier is the mean of is there in its middle.
-            self.note(way, middle, self.moved(middle), peaks.mean(peaks.windows))
+            self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
             seen.append((middle.motion, self.crushed(middle)))
-            if len(way.rows) % SEEN == 0:
-                self.observe(run, state, way.rows[-1].force)
+            if len(traverse.rows) % SEEN == 0:
+                self.observe(run, state, traverse.rows[-1].force)
             went = run.system.farthest(state.motion - before)
-            way.gone += went
-            if (way.rows[-1].force <= 0 and way.answer > self.least) or self.falls(state):
-                way.verdict = "collapse"
+            traverse.gone += went
+            if (traverse.rows[-1].force <= 0 and traverse.answer > self.least) or self.falls(state):
+                traverse.verdict = "collapse"
                 break
-            if abs(self.moved(state)) >= self.distance or way.rows[-1].force > self.most:
+            if abs(self.moved(state)) >= self.distance or traverse.rows[-1].force > self.most:
                 break
             power = min(most, power / max(went / (speed * run.dt * np.dot(parts, lengths)), 1 / QUICKER))
         else:
-            way.verdict = "undecided"
-        self.conclude(way, peaks, seen)
-        self._read_where_it_moves(way, [motion for motion, _ in seen])
+            traverse.verdict = "undecided"
+        self.conclude(traverse, peaks, seen)
+        self._read_where_it_moves(traverse, [motion for motion, _ in seen])
         return state
 
 

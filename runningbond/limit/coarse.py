@@ -25,12 +25,12 @@ from .certificates import NO_JUMP, Certificate, certify, least_multiplier, rough
 from .descent import jump_pattern
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
-from .found import Observer, Search
 from .interior_point import near
 from .macro import Glued, freest, still_points
 from .neighbourhood import certificates_near, neighbourhood, one_of
 from .programs import Programs
 from .search import programs_allowed, search
+from .search_log import Observer, SearchLog
 from .sequences import WEIGHTS, averaged
 
 POINTS = 1000
@@ -89,19 +89,19 @@ class CoarseSearch:
     workers: int = 1
     starts: int = STARTS
     most: float | None = None
-    found: Search = field(default_factory=Search)
+    found: SearchLog = field(default_factory=SearchLog)
     seen: set[bytes] = field(default_factory=set)
     tried: set[bytes] = field(default_factory=set)
 
-    def run(self) -> Search:
+    def run(self) -> SearchLog:
         """Search, and keep what was found at Ctrl-C."""
         return self._kept(self._run)
 
-    def go_on(self) -> Search:
+    def go_on(self) -> SearchLog:
         """Search the neighbourhoods of what was found otherwise, and keep what was found at Ctrl-C."""
         return self._kept(self._around)
 
-    def _kept(self, search: Callable[[], None]) -> Search:
+    def _kept(self, search: Callable[[], None]) -> SearchLog:
         try:
             search()
         except KeyboardInterrupt:

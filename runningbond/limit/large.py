@@ -21,9 +21,9 @@ from runningbond.scene import Array
 from .certificates import driving_forces, roughly_certified
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
-from .found import Observer, Search
 from .interior_point import near
 from .macro import glue, still_points
+from .search_log import Observer, SearchLog
 from .sequences import averaged
 
 POINTS = 4500
@@ -47,12 +47,12 @@ def takes_one_start(system: Equilibrium) -> bool:
     return len(system.points) >= POINTS
 
 
-def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search:
+def search_large(system: Equilibrium, place: Array, observe: Observer) -> SearchLog:
     """Run both sequences from the associated pressures, or up to a certificate, or Ctrl-C; loads are rough.
 
     Movable blocks have their centroids at `place` ``(n, 2)`` [m].
     """
-    found = Search(starts=1)
+    found = SearchLog(starts=1)
     try:
         pressure = near(system, coulomb(system.strength)).pressure
         first = _program(system, pressure, found)
@@ -65,7 +65,7 @@ def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search
     return found
 
 
-def _program(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
+def _program(system: Equilibrium, pressure: Array, found: SearchLog) -> ForceSolution:
     """A program of the sequences; HiGHS says whether one without an optimum has forces without end."""
     found.add_programs(1)
     forces = frozen_friction(system.strength, pressure)
@@ -80,7 +80,7 @@ def _sequence(
     place: Array | None,
     pressure: Array,
     program: ForceSolution,
-    found: Search,
+    found: SearchLog,
     observe: Observer,
     weight: float,
     looked_at: range,
@@ -102,7 +102,7 @@ def _sequence(
 
 
 def _corners(
-    system: Equilibrium, place: Array | None, pressure: Array, motion: Array, found: Search
+    system: Equilibrium, place: Array | None, pressure: Array, motion: Array, found: SearchLog
 ) -> Iterator[Array]:
     """Mechanisms ``(nd,)`` at corners of the program of which a mix is given: of the glued wall, or of the wall."""
     if place is None:
@@ -123,6 +123,6 @@ def _corners(
                 yield glued.motions @ corner.motion
 
 
-def _corner(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
+def _corner(system: Equilibrium, pressure: Array, found: SearchLog) -> ForceSolution:
     found.add_programs(1)
     return solve_forces(system, frozen_friction(system.strength, pressure))

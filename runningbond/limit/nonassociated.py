@@ -19,10 +19,10 @@ from .certificates import Certificate, certified_loads, certify, least_multiplie
 from .coarse import POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
-from .found import Observer, Search
 from .large import search_large, takes_one_start
 from .moving_support import JAMMED, NOTHING, bridged_message, is_bridged, may_leave, reaction_note
 from .search import STARTS, search
+from .search_log import Observer, SearchLog
 
 LISTED = 4
 """Intervals of certified loads, apart from each other, that a message lists; of more it tells the number."""
@@ -109,7 +109,7 @@ def _collapse(
     system: Equilibrium,
     state: LimitState,
     tolerance: float,
-    look: Callable[[Equilibrium, Array], Search],
+    look: Callable[[Equilibrium, Array], SearchLog],
 ) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
     cut = state.system
@@ -145,7 +145,7 @@ def _collapse(
 
 def _look(
     system: Equilibrium, place: Array, *, starts: int, workers: int, observe: Observer, most: int | None
-) -> Search:
+) -> SearchLog:
     """Search a wall whose movable blocks have their centroids at `place` ``(n, 2)`` [m], as its size asks for."""
     if takes_one_start(system):
         return search_large(system, place, observe)
@@ -164,7 +164,7 @@ def _associated(system: Equilibrium) -> ForceSolution:
     return solve_forces(system, coulomb(system.strength))
 
 
-def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: Search) -> list[Certificate]:
+def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: SearchLog) -> list[Certificate]:
     """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations.
 
     What cannot be proved there is left out, and mechanisms that spend of strengths which `full` has more of.
@@ -199,7 +199,7 @@ def _height(certificate: Certificate) -> float:
     return certificate.most.multiplier
 
 
-def _message(loads: list[tuple[float, float]], result: Search, tolerance: float, *, falling: bool) -> str:
+def _message(loads: list[tuple[float, float]], result: SearchLog, tolerance: float, *, falling: bool) -> str:
     """What is proved, and how hard anything else was looked for."""
     lower, upper = loads[0][0], loads[-1][1]
     others, beyond = ("larger", "above") if falling else ("smaller", "below")
@@ -217,11 +217,11 @@ def _message(loads: list[tuple[float, float]], result: Search, tolerance: float,
     return f"{message}; {found}"
 
 
-def _effort(result: Search) -> str:
+def _effort(result: SearchLog) -> str:
     return f"{result.starts} starts, {result.programs} linear programs"
 
 
-def _stopped(result: Search) -> str:
+def _stopped(result: SearchLog) -> str:
     return ", interrupted" if result.interrupted else ""
 
 
@@ -231,7 +231,7 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
     return replace(outcome, status="unbounded", message=message)
 
 
-def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: float | None) -> Outcome:
+def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bound: float | None) -> Outcome:
     """Outcome of a wall without a certified collapse, under the associated multiplier if there is one."""
     programs = f"no collapse certified from {_effort(result)}{_stopped(result)}"
     if result.frictionless:

@@ -18,14 +18,14 @@ from .certificates import least_multiplier
 from .descent import is_lower
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution
-from .found import Observer, Search
 from .programs import Corners, Programs
-from .starts import ROUND, WAYS, Start
+from .search_log import Observer, SearchLog
+from .starts import ORIGINS, ROUND, Start
 
 STARTS = 160
 """Most starts."""
 
-DRY = 2 * ROUND * len(WAYS)
+DRY = 2 * ROUND * len(ORIGINS)
 """Starts in a row that bring nothing lower, every way to start twice, after which the search ends."""
 
 AFFORDED = 22_000
@@ -52,16 +52,16 @@ def search(
     workers: int = 1,
     observe: Observer = lambda found: None,
     most: float | None = None,
-    found: Search | None = None,
+    found: SearchLog | None = None,
     place: Array | None = None,
-) -> Search:
+) -> SearchLog:
     """Look for certificates from many starts, seeded; a keyboard interrupt keeps those that were found.
 
     `observe` is shown what was found after every round; starts are made by so many `workers` at a time, and none after
     the `most` linear programs, `programs_allowed` where they are not given. What was `found` before is added to.
     Where movable blocks have their centroids at a `place` ``(n, 2)`` [m], neighbourhoods are searched too.
     """
-    found = Search() if found is None else found
+    found = SearchLog() if found is None else found
     found.dry, made, stopped = 0, 0, Event()
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
@@ -117,7 +117,7 @@ def _run(batch: Sequence[Start], crew: Sequence[Programs]) -> None:
             raise
 
 
-def _merge(found: Search, start: Search) -> None:
+def _merge(found: SearchLog, start: SearchLog) -> None:
     found.dry = 0 if is_lower(start.lowest, found.lowest) else found.dry + 1
     found.certificates += start.certificates
     found.starts += 1

@@ -16,10 +16,10 @@ from .certificates import NO_JUMP, Certificate, least_multiplier
 from .descent import Descent, is_lower, random_weights
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
-from .found import Search
 from .macro import Glued, still_points
 from .neighbourhood import certificates_near, distances, neighbourhood, one_of
 from .programs import Corners, Programs
+from .search_log import SearchLog
 from .sequences import WEIGHTS, averaged, certified, short_sequence
 
 PROGRAM_BUDGET = 40
@@ -34,11 +34,12 @@ PIVOTS = 400
 ROUND = 4
 """Starts of a round."""
 
-Way: TypeAlias = Literal["random", "balanced", "known", "neighbourhood"]
+Origin: TypeAlias = Literal["random", "balanced", "known", "neighbourhood"]
 """What a start is made from: random pressures, those that balance a random load, or those of a certificate."""
 
-WAYS: tuple[Way, ...] = ("random", "balanced", "known", "neighbourhood", "known", "balanced", "known", "neighbourhood")
-"""Ways of the rounds, in turn."""
+FIRST: tuple[Origin, ...] = ("random", "balanced", "known", "neighbourhood")
+ORIGINS: tuple[Origin, ...] = (*FIRST, "known", "balanced", "known", "neighbourhood")
+"""Origins of the rounds, in turn."""
 
 LOWEST = 0.5
 """Share of the certificates started from that are the lowest."""
@@ -77,7 +78,7 @@ class Start:
     known: dict[bytes, ForceSolution | None]
     place: Array | None = None
     corners: Corners = (None, None, None)
-    found: Search = field(default_factory=Search)
+    found: SearchLog = field(default_factory=SearchLog)
 
     def run(self, programs: Programs) -> None:
         """Look for certificates, and write down what is found as it is found."""
@@ -97,7 +98,7 @@ class Start:
             self.found.add_programs(programs.solved - solved)
 
     def _certificates(self, descent: Descent, rng: np.random.Generator) -> Iterator[Certificate]:
-        if self.before and self._way == "neighbourhood":
+        if self.before and self._origin == "neighbourhood":
             base = self._base(rng)
             glued = self._neighbourhood(descent.system, base, rng)
             if glued is not None:
@@ -110,8 +111,8 @@ class Start:
             yield from short_sequence(descent, pressure, WEIGHTS[(self.number - 1) % len(WEIGHTS)])
 
     @property
-    def _way(self) -> Way:
-        return WAYS[self.number // ROUND % len(WAYS)]
+    def _origin(self) -> Origin:
+        return ORIGINS[self.number // ROUND % len(ORIGINS)]
 
     def _scattered(self, system: Equilibrium, pressure: Array, rng: np.random.Generator) -> Array:
         """Pressures ``(np,)`` beside others, everywhere or, as often, near one block."""
@@ -166,9 +167,9 @@ class Start:
         top = self.associated.multiplier if bounded else 1.0
         share = rng.random() if self.number > 3 else 0.0
         weights = random_weights(len(system.points), rng)
-        if self.before and self._way in ("known", "neighbourhood"):
+        if self.before and self._origin in ("known", "neighbourhood"):
             return self._scattered(descent.system, self._base(rng).least.pressure, rng)
-        if self._way == "random":
+        if self._origin == "random":
             return weights * (self.associated.pressure.mean() if bounded else 1.0)
         load = share * top if top > 0 else (1 + share) * top
         state = descent.programs.corner(coulomb(system.strength), weights, load, PIVOTS)
@@ -177,7 +178,7 @@ class Start:
         return self.associated.pressure * rng.lognormal(size=len(weights)) if bounded else weights
 
 
-def first_sequence(descent: Descent, pressure: Array, found: Search) -> Iterator[Certificate]:
+def first_sequence(descent: Descent, pressure: Array, found: SearchLog) -> Iterator[Certificate]:
     """Run the sequence from a first pressure ``(np,)``, certifying every program, and note how it ended."""
     in_a_row, multiplier, growing = 0, -np.inf, True
     for k in range(PROGRAM_BUDGET):

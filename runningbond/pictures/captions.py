@@ -169,7 +169,7 @@ def colour_key(
         lines.append(Line2D([], [], ls="none", label=STATE_NAMES[JointState.CRUSHED], **style))
     if colouring == "course":
         return lines
-    ends = ((AT_REST, "block at rest"), (FASTEST, "fastest block"))
+    ends = ((AT_REST, "block at rest"), (FASTEST, "block that moves most"))
     return [*lines, *(Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=label) for colour, label in ends)]
 
 

@@ -10,7 +10,7 @@ from dem.static import BUDGET as STATIC_BUDGET
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
 from runningbond.dynamics.collapse_load import BUDGET
-from runningbond.limit.found import Search
+from runningbond.limit.search_log import SearchLog
 from runningbond.results.outcome import number
 
 
@@ -106,7 +106,7 @@ class SearchProgress:
     def __init__(self) -> None:
         self._said = "looks for a first certificate"
 
-    def __call__(self, found: Search) -> None:
+    def __call__(self, found: SearchLog) -> None:
         """Look at what was found."""
         certified = f"{len(found.certificates)} certificates, the last {found.dry} starts in vain"
         self._said = f"{found.starts} starts, {found.programs} linear programs, {certified}"

@@ -25,7 +25,7 @@ from .follow import AFTER, follow
 from .response import MISSED, Response
 from .resting import Resting
 
-START, MOST = 0.05, 50.0
+START, LARGEST_SCALE = 0.05, 50.0
 """Peak acceleration of the ground, in g, at the first scale that is tried, and beyond which no fall is looked for."""
 
 RATIO, BEYOND = 1.25, 2.0
@@ -36,7 +36,7 @@ ROWS = 50
 
 
 @dataclass(eq=False)
-class Search:
+class ScaleSearch:
     """Responses at the scales that were tried."""
 
     respond: Callable[[float], Response]
@@ -95,10 +95,10 @@ def critical_scale(
     outcome = replace(outcome, seconds=time.perf_counter() - start)
     if rest.trouble:
         return replace(outcome, status=rest.trouble[0], message=rest.trouble[1])
-    search, stopped = Search(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
+    search, stopped = ScaleSearch(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
     unit = STANDARD_GRAVITY / float(np.hypot(*rest.history.peak))
     try:
-        _bracket(search, START * unit, MOST * unit, tolerance)
+        _bracket(search, START * unit, LARGEST_SCALE * unit, tolerance)
     except KeyboardInterrupt:
         stopped = True
     outcome = _judged(outcome, rest, search, tolerance, stopped)
@@ -110,7 +110,7 @@ def critical_scale(
     return replace(outcome, message=message, seconds=seconds)
 
 
-def _bracket(search: Search, first: float, most: float, tolerance: float) -> None:
+def _bracket(search: ScaleSearch, first: float, most: float, tolerance: float) -> None:
     """Try scales up to the first fall, bisect it, and go on beyond it."""
 
     def scale(number: int) -> float:  # from the first one each time, or what was tried would be tried again
@@ -132,7 +132,7 @@ def _bracket(search: Search, first: float, most: float, tolerance: float) -> Non
         lower, upper = (lower, middle) if search.falls(middle) else (middle, upper)
 
 
-def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, stopped: bool) -> Outcome:
+def _judged(outcome: Outcome, rest: Resting, search: ScaleSearch, tolerance: float, stopped: bool) -> Outcome:
     runs = search.in_order
     first = next((k for k, run in enumerate(runs) if run.verdict == "collapse"), len(runs))
     upper = runs[first] if first < len(runs) else None

@@ -6,7 +6,7 @@ from .errors import SceneError
 from .ranges import Range
 from .table import Table
 
-MOST = 1000
+MOST_CYCLES = 1000
 """Cycles of a protocol at most."""
 
 
@@ -32,7 +32,7 @@ def read_protocol(table: Table) -> tuple[float, ...] | None:
     if not all(amplitudes):
         where = f"{table.key('amplitudes')}[{amplitudes.index(0.0)}]"
         raise SceneError(where, "must not be zero: the path begins and ends there by itself", 0.0)
-    cycles = table.optional_number("cycles", Range(least=1, most=MOST)) or 1.0
+    cycles = table.optional_number("cycles", Range(least=1, most=MOST_CYCLES)) or 1.0
     if not cycles.is_integer():
         raise SceneError(table.key("cycles"), "must be a whole number", cycles)
     return (*(x for amplitude in amplitudes for x in (amplitude, -amplitude) * int(cycles)), 0.0)

@@ -43,8 +43,8 @@ FAR = 30.0
 Slips are told from its corners, and rounded as these are far: at ten thousand walls of stiff joints never rest.
 """
 
-NEAR = 0.1
-"""Gap, in block sizes, that looks like one of a survey."""
+NEAR = 0.3
+"""Gap, in block sizes, that looks like one of a survey, or like a joint with mortar in it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -565,4 +565,5 @@ def _gap_to(scene: Scene, floating: Mask) -> str:
     if not 0 < gap < NEAR * scene.block_size:
         return ""
     bridged = f"joints bridge {scene.blocks.tolerance:.2g} m"
-    return f" over a gap of {gap:.3g} m, and {bridged}; wall.heal closes gaps of drawings and outlines"
+    remedy = "in drawings and outlines wall.heal closes gaps, and wall.expand fills those with mortar in them"
+    return f" over a gap of {gap:.3g} m, and {bridged}; {remedy}"

@@ -308,7 +308,7 @@ def test_a_wall_is_pushed_as_far_as_the_command_line_asks(tmp_path: Path, capsys
     wall, out = str(write_toml(content(**SMALL), tmp_path / "pushed.toml")), tmp_path / "out"
     far = ["--displacements", "finite", "--distance", "0.002"]
     assert command(["run", wall, "--model", "dem-dynamic", *far, "--out", str(out)]) == 0
-    assert "largest multiplier along the way" in capsys.readouterr().out
+    assert "largest multiplier along the path" in capsys.readouterr().out
     kept, _ = load_outcome(out)
     assert kept.curve[-1, 0] == pytest.approx(0.002, rel=0.01)
     assert (out / "curve.png").exists()

@@ -15,7 +15,7 @@ from fem_interface.model import fem
 from runningbond.commands.command_line import command
 from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise, experiment
-from runningbond.compare.advice.climb import Rung, together
+from runningbond.compare.advice.climb import AdviceRung, together
 from runningbond.compare.advice.costs import estimate, pace
 from runningbond.compare.advice.experiment import ModelError, error_of, read_errors, write_errors
 from runningbond.compare.advice.knowledge import Knowledge
@@ -516,7 +516,7 @@ def test_an_answer_at_small_displacements_tells_where_they_are_not_small(leans_b
     curve = np.array([[0.0, 0.0], [leans_by * size, 0.36]])
     history = Outcome("", HISTORY.name, "collapse", 0.36, 0.36, 0.37, curve=curve)
     found.learn(HISTORY, history, draws=[history])
-    refused = Rung(f"{HISTORY.name}, finite", None, Step(None, "refused"), None, 0.0)
+    refused = AdviceRung(f"{HISTORY.name}, finite", None, Step(None, "refused"), None, 0.0)
     message = Advice(found, [refused]).outcome().message
     assert "at small displacements" in message
     assert ("though they are not small" in message) == said

@@ -13,7 +13,7 @@ from fem_interface.model import fem
 from runningbond import Wall
 from runningbond.dynamics import Run, State
 from runningbond.dynamics.contact_update import ContactUpdate
-from runningbond.dynamics.lead import Way, WayRow
+from runningbond.dynamics.lead import Traverse, TraverseRow
 from runningbond.dynamics.push import Push
 from runningbond.joints import wall_points
 from runningbond.limit import limit_nonassociated
@@ -39,10 +39,10 @@ def slender(live: dict[str, Any] | list[dict[str, Any]]) -> Scene:
     return block(WIDTH, HEIGHT, joint__friction=1.4, load__live=live)
 
 
-def angles(curve: Array, at: Array, way: Array) -> Array:
+def angles(curve: Array, at: Array, direction: Array) -> Array:
     """Rotations at which a point of the block has gone by the displacements of a curve along a direction."""
     every = np.linspace(0.0, math.atan(WIDTH / HEIGHT) + 0.05, 2000)
-    gone = [(about_its_toe(at, angle) - (at - TOE)) @ way for angle in every]
+    gone = [(about_its_toe(at, angle) - (at - TOE)) @ direction for angle in every]
     return np.interp(curve[:, 0], gone, every)
 
 
@@ -70,10 +70,10 @@ def test_a_block_is_pushed_by_its_weight_until_it_stands_on_its_corner(model: An
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
 def test_a_force_at_a_point_goes_along_with_it(model: Any) -> None:
     """Pushed at the corner farther from the toe, which rises: λ F (its height) = W (arm of the middle)."""
-    at, middle, way = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
-    scene = slender({"kind": "point", "at": at.tolist(), "force": way.tolist()})
+    at, middle, direction = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
+    scene = slender({"kind": "point", "at": at.tolist(), "force": direction.tolist()})
     outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
-    turned = angles(outcome.curve, at, way)
+    turned = angles(outcome.curve, at, direction)
     exact = [-weight * about_its_toe(middle, angle)[0] / about_its_toe(at, angle)[1] for angle in turned]
     follows(outcome, np.array(exact))
 
@@ -83,8 +83,8 @@ def test_a_couple_is_the_same_however_far_its_block_has_turned(model: Any) -> No
     middle = np.array([WIDTH / 2, HEIGHT / 2])
     scene = slender({"kind": "moment", "at": middle.tolist(), "moment": -1.0})
     outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
-    _, at, way = scene.control_point
-    exact = [-weight * about_its_toe(middle, angle)[0] for angle in angles(outcome.curve, at, way)]
+    _, at, direction = scene.control_point
+    exact = [-weight * about_its_toe(middle, angle)[0] for angle in angles(outcome.curve, at, direction)]
     follows(outcome, np.array(exact))
 
 
@@ -111,7 +111,7 @@ def test_the_ground_bears_the_push_and_the_weight() -> None:
     outcome = dem_dynamic(scene, 0.02, displacements="finite", distance=0.01)
     weight = 9.81 * scene.mass[~scene.fixed].sum()
     columns = [*outcome.path_columns]
-    along, up = (outcome.path[20:, columns.index(f"ground {way} [N]")] for way in ("horizontal", "vertical"))
+    along, up = (outcome.path[20:, columns.index(f"ground {axis} [N]")] for axis in ("horizontal", "vertical"))
     assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # a moment's, and a row's mean
     assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=0.01)
     assert up.mean() == pytest.approx(weight, rel=0.01)
@@ -240,9 +240,25 @@ def test_a_push_takes_its_time_for_as_far_as_blocks_are_to_go(
     """Not for the way of its control point, which may go anywhere."""
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
-    rows = [WayRow(moved, 0.0, np.zeros((0, 2)), np.zeros(0), (0.0, 0.0), ())]
-    after = lead.after(Way(nothing, np.zeros(0), True, rows, verdict, gone=gone))
+    rows = [TraverseRow(moved, 0.0, np.zeros((0, 2)), np.zeros(0), (0.0, 0.0), ())]
+    after = lead.after(Traverse(nothing, np.zeros(0), True, rows, verdict, gone=gone))
     assert after.longest == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("ends", "said"),
+    [
+        ((0.2, 0.3), "falls to nothing at 0.275 m"),
+        ((-1e-7, -3e-7), "falls to nothing while the control point stays where it is"),
+    ],
+)
+def test_where_the_multiplier_falls_to_nothing_is_told_if_the_control_point_goes_there(
+    ends: tuple[float, float], said: str
+) -> None:
+    """Another stone may fall: what a control point moves by meanwhile is its springs' alone."""
+    nothing: Any = None
+    lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
+    assert said in lead.fall(np.column_stack([ends, (0.3, -0.1)]))
 
 
 def test_a_load_low_on_a_wall_that_hardly_goes_itself_pushes_to_the_brink() -> None:
@@ -314,8 +330,8 @@ def test_displacements_are_read_at_the_control_point_again_once_it_moves(monkeyp
     """Where a push that was far too fast has thrown blocks about, and left it where it was."""
     after, heel = Push.after, (np.zeros(1, dtype=np.int64), np.zeros(2), np.array([0.0, 1.0]))
 
-    def astray(lead: Push, way: Way) -> Push:
-        return replace(cast(Push, after(lead, way)), elsewhere=heel)
+    def astray(lead: Push, traverse: Traverse) -> Push:
+        return replace(cast(Push, after(lead, traverse)), elsewhere=heel)
 
     monkeypatch.setattr(Push, "after", astray)
     led = dem_dynamic(slender({"kind": "lateral"}), displacements="finite")

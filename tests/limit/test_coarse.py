@@ -11,9 +11,9 @@ from runningbond.limit.coarse import POINTS, CoarseSearch, finest, is_worth
 from runningbond.limit.descent import Descent, jump_pattern
 from runningbond.limit.equilibrium import Equilibrium
 from runningbond.limit.force_program import ForceSolution, coulomb, solve_forces
-from runningbond.limit.found import Search
 from runningbond.limit.neighbourhood import neighbourhood
 from runningbond.limit.search import search
+from runningbond.limit.search_log import SearchLog
 from runningbond.scene import Array, Scene
 from tests.at_length import at_length
 from tests.limit.test_search import rubble
@@ -134,7 +134,7 @@ def test_larger_walls_are_searched_in_parts_first(points: int, parts: bool, monk
     looked: list[CoarseSearch] = []
     run = CoarseSearch.run
 
-    def seen(self: CoarseSearch) -> Search:
+    def seen(self: CoarseSearch) -> SearchLog:
         looked.append(self)
         return run(self)
 
@@ -217,11 +217,11 @@ def test_what_cannot_be_proved_exactly_hides_nothing(monkeypatch: pytest.MonkeyP
 
 def test_walls_of_no_parts_are_searched_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
     """With no freedoms allowed to what is glued; the neighbourhood of what is found then is searched as well."""
-    around: list[Search] = []
+    around: list[SearchLog] = []
     monkeypatch.setattr("runningbond.limit.nonassociated.POINTS", 0)
     monkeypatch.setattr("runningbond.limit.coarse.finest", lambda *arguments: None)
 
-    def go_on(self: CoarseSearch) -> Search:
+    def go_on(self: CoarseSearch) -> SearchLog:
         around.append(self.found)
         return self.found
 

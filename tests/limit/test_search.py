@@ -16,9 +16,9 @@ from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import driving_forces
 from runningbond.limit.descent import Descent, is_lower
 from runningbond.limit.force_program import frozen_friction, solve_forces
-from runningbond.limit.found import Search
 from runningbond.limit.programs import Programs
 from runningbond.limit.search import search
+from runningbond.limit.search_log import SearchLog
 from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
@@ -207,7 +207,7 @@ def test_what_is_found_does_not_depend_on_how_many_starts_are_made_at_a_time() -
 def test_a_search_says_how_far_it_has_come() -> None:
     progress, lines = SearchProgress(), []
 
-    def observe(found: Search) -> None:
+    def observe(found: SearchLog) -> None:
         progress(found)
         lines.append(progress.line())
 

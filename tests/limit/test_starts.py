@@ -14,7 +14,7 @@ from runningbond.limit.macro import sides
 from runningbond.limit.neighbourhood import distances
 from runningbond.limit.programs import Programs
 from runningbond.limit.search import search
-from runningbond.limit.starts import ROUND, WAYS, Start, Way
+from runningbond.limit.starts import ORIGINS, ROUND, Origin, Start
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 from tests.limit.test_coarse import ordered
 from tests.limit.test_search import rubble
@@ -29,9 +29,9 @@ def known(scene: Scene) -> Known:
     return system, place, associated, sorted(search(system, associated, 1).certificates, key=least_multiplier)
 
 
-def numbers(way: Way) -> range:
+def numbers(origin: Origin) -> range:
     """Starts of the first round of a way."""
-    return range(WAYS.index(way) * ROUND, (WAYS.index(way) + 1) * ROUND)
+    return range(ORIGINS.index(origin) * ROUND, (ORIGINS.index(origin) + 1) * ROUND)
 
 
 @pytest.mark.parametrize("name", ["rubble", "wall-w5"])

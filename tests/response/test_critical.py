@@ -12,7 +12,7 @@ import pytest
 from dem.finite_system import finite_system
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import Response, critical_scale, follow
-from runningbond.response.critical import BEYOND, MOST, RATIO, START, Search
+from runningbond.response.critical import BEYOND, LARGEST_SCALE, RATIO, START, ScaleSearch
 from runningbond.response.response import ResponseVerdict
 from runningbond.results import Outcome
 from runningbond.scene.history import STANDARD_GRAVITY
@@ -96,7 +96,7 @@ def test_a_wall_that_no_scale_brings_down_has_no_upper_one(search: Callable[[Tol
     outcome = search(lambda scale: ("stands", 0.0))
     assert (outcome.status, outcome.upper) == ("undecided", None)
     assert outcome.lower == outcome.curve[-1, 1]
-    assert MOST * UNIT < outcome.curve[-1, 1] <= MOST * UNIT * RATIO
+    assert LARGEST_SCALE * UNIT < outcome.curve[-1, 1] <= LARGEST_SCALE * UNIT * RATIO
     assert outcome.message.startswith("stands at every scale tried, up to ")
     doubtful = search(lambda scale: ("undecided", 0.0))
     assert (doubtful.lower, doubtful.upper) == (None, None)
@@ -131,7 +131,7 @@ def test_windows_run_from_the_first_scale_at_which_it_stands_again_to_the_last()
     verdicts: dict[float, ResponseVerdict] = dict.fromkeys((1.0, 1.1, 1.4, 1.5, 1.6, 1.8, 2.0), "stands")
     verdicts |= {1.2: "collapse", 1.3: "undecided", 1.7: "undecided", 1.9: "collapse"}
     tried = {scale: replace(known(), scale=scale, verdict=verdict) for scale, verdict in verdicts.items()}
-    assert Search(lambda scale: tried[scale], tried).windows() == [(1.4, 1.6), (1.8, 1.8), (2.0, 2.0)]
+    assert ScaleSearch(lambda scale: tried[scale], tried).windows() == [(1.4, 1.6), (1.8, 1.8), (2.0, 2.0)]
 
 
 def test_nothing_is_bisected_down_to_where_a_wall_neither_rests_nor_falls(search: Callable[[Told], Outcome]) -> None:
@@ -148,5 +148,5 @@ def test_nothing_is_bisected_down_to_where_a_wall_neither_rests_nor_falls(search
 def test_of_a_wall_that_falls_at_every_scale_no_lower_one_is_known(search: Callable[[Told], Outcome]) -> None:
     outcome = search(lambda scale: ("collapse", 0.0))
     assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", None, outcome.curve[0, 1])
-    assert outcome.curve[0, 1] < 1e-9 * MOST * UNIT
+    assert outcome.curve[0, 1] < 1e-9 * LARGEST_SCALE * UNIT
     assert outcome.message.startswith("no scale was found at which the wall comes to rest below one at which it falls")

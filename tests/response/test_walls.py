@@ -14,7 +14,7 @@ from runningbond.compare.published import published_scene
 from runningbond.joints.wall_law import with_impacts
 from runningbond.models import respond, run_model
 from runningbond.response import critical_scale, follow
-from runningbond.response.critical import RATIO, Search
+from runningbond.response.critical import RATIO, ScaleSearch
 from runningbond.response.response import ResponseVerdict
 from runningbond.scene import ANCHOR, History, Lateral, LineLoad, Load, Scene, SceneError, Stiffness, Ties
 from runningbond.scene.history import pulse
@@ -119,7 +119,7 @@ def test_windows_are_told_of() -> None:
     housner = HousnerBlock()
     scale = GRAVITY * housner.b / housner.h
     rest = resting(block(housner.b, housner.h, shaken("sine", scale, 2 * math.pi / (4 * housner.p))))
-    search = Search(lambda factor: follow(rest, factor, rows=50), {})
+    search = ScaleSearch(lambda factor: follow(rest, factor, rows=50), {})
     assert [search.falls(factor) for factor in (1.7, 1.9, 5.15, 5.6)] == [False, True, False, True]
     assert search.windows() == [(5.15, 5.15)]
 

@@ -347,6 +347,7 @@ def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None
         ([[(0, 0), (200, 0), (200, 100), (100, 0), (0, 100)]], "crosses"),
         ([[(0, 40), (200, 40), (200, 100), (0, 100)]], "is a floating block"),
         ([[(0, 0.5), (200, 0.5), (200, 100), (0, 100)]], "over a gap of 0.0005 m, and joints bridge"),
+        ([[(0, 15), (200, 15), (200, 100), (0, 100)]], "wall.expand fills those with mortar in them"),
         ([], "needs the ground and at least one block"),
     ],
 )

@@ -37,7 +37,14 @@ from runningbond.studies.accuracy.tables import (
     records,
     tables,
 )
-from runningbond.studies.accuracy.walls import Wall, accuracy_walls, all_walls, error, growth_walls, stiffness_walls
+from runningbond.studies.accuracy.walls import (
+    StudiedWall,
+    accuracy_walls,
+    all_walls,
+    error,
+    growth_walls,
+    stiffness_walls,
+)
 from runningbond.studies.apart import TOO_LONG, measure_apart
 from runningbond.studies.page import draw_charts, write_page
 
@@ -66,7 +73,7 @@ def test_errors_of_panels_are_from_the_interval_that_limit_analysis_certifies() 
     certified = ask("collapse", "limit-nonassociated", wall.scene, {})
     assert certified.status == "collapse"
     assert wall.interval() == (certified.lower, certified.upper)
-    assert Wall(wall.scene).interval() is None
+    assert StudiedWall(wall.scene).interval() is None
 
 
 # --- the measurement -----------------------------------------------------------------------------------------

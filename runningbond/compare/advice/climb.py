@@ -25,7 +25,7 @@ FARTHER = 3.0  # displacement up to which to push, relative to that of the colla
 
 
 @dataclass(frozen=True)
-class Rung:
+class AdviceRung:
     """One rung: the outcome of a model, and what follows from it."""
 
     model: str  # its name
@@ -40,9 +40,9 @@ class Advice:
     """A climb: what is asked of a scene, what is known of it, and the rungs so far."""
 
     known: Knowledge
-    rungs: list[Rung] = field(default_factory=list)
+    rungs: list[AdviceRung] = field(default_factory=list)
 
-    def climb(self) -> Iterator[Rung]:
+    def climb(self) -> Iterator[AdviceRung]:
         """Climb rung by rung; each is given when it is done, before the next is begun."""
         step = Step(ladder("estimate")[0], "the trend at no cost")
         while step.model is not None:
@@ -57,7 +57,7 @@ class Advice:
                 following = next_step(self.known, step, outcome)
             cost = self.known.estimate(following.model) if following.model and not following.finite else None
             cost = cost and replace(cost, seconds=following.draws * cost.seconds)
-            self.rungs.append(Rung(step.name or "", outcome, following, cost, self.known.seconds))
+            self.rungs.append(AdviceRung(step.name or "", outcome, following, cost, self.known.seconds))
             yield self.rungs[-1]
             step = following
 

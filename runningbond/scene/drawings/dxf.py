@@ -15,7 +15,7 @@ from .curves import TURN, Arc, spline_points
 
 KEY = "wall.drawing"
 
-MOST = 300_000
+MOST_ENTITIES = 300_000
 """Entities that a drawing may hold once its INSERTs are exploded; a few that hold each other could be any number."""
 
 DEEPEST = 32
@@ -158,8 +158,8 @@ class _Walk:
 
     def _count(self, more: int) -> None:
         self._seen += more
-        if self._seen > MOST:
-            raise SceneError(KEY, f"holds more than {MOST} entities, its INSERTs exploded")
+        if self._seen > MOST_ENTITIES:
+            raise SceneError(KEY, f"holds more than {MOST_ENTITIES} entities, its INSERTs exploded")
 
 
 def _decoded(name: str) -> str:

@@ -16,8 +16,8 @@ from runningbond.studies import Row
 from runningbond.studies.apart import limit_time, resource
 
 from .parameters import settings_of
-from .questions import Answer, ask
-from .walls import Wall, accuracy_walls, all_walls, error
+from .questions import AnswerRow, ask
+from .walls import StudiedWall, accuracy_walls, all_walls, error
 
 RUNS, CHEAP = 3, 2.0  # timed runs of a case of which one takes no more processor seconds than that; else one
 REFERENCE = "limit"  # its processor seconds on the same wall are the unit of ratios, which hold on every machine
@@ -26,8 +26,9 @@ REFERENCE = "limit"  # its processor seconds on the same wall are the unit of ra
 def measure(name: str, model: str, parameter: str, setting: str) -> Row:
     """Measure a case in this process, after an untimed run on a small wall of the same kind that loads the kernels.
 
-    The row has what is known of the wall, the `Answer` and its relative error; median, least and most seconds of timed
-    runs by the clock, of the processor, and in those of `REFERENCE` just before; and the most memory they took [MB].
+    The row has what is known of the wall, the `AnswerRow` and its relative error; median, least and most seconds of
+    timed runs by the clock, of the processor, and in those of `REFERENCE` just before; and the most memory they took
+    [MB].
     """
     wall, settings = all_walls()[name], settings_of(model, parameter, setting)
     interval = wall.interval()
@@ -59,7 +60,7 @@ def measure(name: str, model: str, parameter: str, setting: str) -> Row:
     return row
 
 
-def _timed(wall: Wall, model: str, settings: dict[str, Any]) -> tuple[Answer, float, float]:
+def _timed(wall: StudiedWall, model: str, settings: dict[str, Any]) -> tuple[AnswerRow, float, float]:
     """An answer, and its seconds by the clock and of the processor."""
     clock, processor = time.perf_counter(), time.process_time()
     result = ask(wall.question, model, wall.scene, settings)

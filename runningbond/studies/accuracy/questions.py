@@ -26,7 +26,7 @@ SETTLED = 1e-3  # by how much of λ half the speed may change the curve of the t
 SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner
 
 
-class Answer(NamedTuple):
+class AnswerRow(NamedTuple):
     """What a model said, as columns of the study's table."""
 
     status: str  # of `runningbond.results.Outcome`, or ``not applicable`` where the model has nothing to say
@@ -38,22 +38,22 @@ class Answer(NamedTuple):
     message: str = ""
 
 
-def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> Answer:
+def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> AnswerRow:
     """Ask a model a question about a scene, with arguments of the model from `parameters`."""
     try:
         return QUESTIONS[question](model, scene, **settings)
     except SceneError as reason:
-        return Answer("not applicable", message=str(reason))
+        return AnswerRow("not applicable", message=str(reason))
 
 
-def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings: Any) -> Answer:
+def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings: Any) -> AnswerRow:
     if "drive" in settings:  # the peak under work-conjugate displacement control, at a speed that some steps give
         system, distance = _system(model, scene), DRIVEN * scene.block_size
         result = _drive(system, scene, distance, settings["drive"])
         speed = f"largest λ while driven {1e3 * distance:.3g} mm"
-        return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
+        return AnswerRow("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
     said = MODELS[model].solve(scene, tolerance, **settings)
-    return Answer(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
+    return AnswerRow(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
 
 
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Pushover:
@@ -68,7 +68,7 @@ def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: 
     return system_of(modal_wall(scene, **settings), mass_scaling=mass_scaling)
 
 
-def _turned(model: str, scene: Scene, **settings: Any) -> Answer:
+def _turned(model: str, scene: Scene, **settings: Any) -> AnswerRow:
     """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
     scene = scene.with_joint(elasticity=Stiffness(SOFT, SOFT))
     height = scene.lowest_block
@@ -89,19 +89,19 @@ def _turned(model: str, scene: Scene, **settings: Any) -> Answer:
     near = np.abs(turned - TURNED) < TURNED / 2
     parabola = np.polynomial.Polynomial.fit(turned[near], multiplier[near], 2)
     scatter = f"curve scatters by {float(np.std(multiplier[near] - parabola(turned[near]))):.1e}"
-    return Answer("collapse", float(parabola(TURNED)), None, None, dofs, steps, scatter)
+    return AnswerRow("collapse", float(parabola(TURNED)), None, None, dofs, steps, scatter)
 
 
-def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
+def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> AnswerRow:
     """A2222 or A1212 of a periodic cell; the energy of a shear E12 is 4 A1212 / 2."""
     if model == "homog":
         moduli = rigid_moduli(scene)
-        return Answer("elastic", (moduli.a2222, moduli.a1212)[which - 1])
+        return AnswerRow("elastic", (moduli.a2222, moduli.a1212)[which - 1])
     result, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
-    return Answer("elastic", float(result[which, which]) / (1, 1, 4)[which], dofs=dofs)
+    return AnswerRow("elastic", float(result[which, which]) / (1, 1, 4)[which], dofs=dofs)
 
 
-def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
+def _physical_second(model: str, scene: Scene, **settings: Any) -> AnswerRow:
     """Processor seconds that a second of the wall's time takes, with the spread of the measurements."""
     system = _system(model, scene, **settings)
     run, state = Run(system), State.at_rest(system)
@@ -112,10 +112,10 @@ def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
         run.hold(state, 0.2, STEPS)
         costs.append((time.process_time() - start) / (STEPS * run.dt))
     step = f"time step {1e6 * run.dt:.4g} µs"
-    return Answer("measured", statistics.median(costs), min(costs), max(costs), system.freedoms, STEPS, step)
+    return AnswerRow("measured", statistics.median(costs), min(costs), max(costs), system.freedoms, STEPS, step)
 
 
-QUESTIONS: dict[Question, Callable[..., Answer]] = {
+QUESTIONS: dict[Question, Callable[..., AnswerRow]] = {
     "collapse": _collapse,
     "turned block": _turned,
     "compression": partial(_modulus, 1),

@@ -16,7 +16,7 @@ from .charts import CHARTS
 from .measure import CHEAP, REFERENCE, RUNS, machine, measure
 from .parameters import COLLAPSE, IN_MOTION, PARAMETERS, STIFF, settings_of
 from .tables import fits, tables
-from .walls import Wall, accuracy_walls, all_walls, growth_walls, stiffness_walls
+from .walls import StudiedWall, accuracy_walls, all_walls, growth_walls, stiffness_walls
 
 ELASTIC = ("homog", "dem-static", "fem")
 ASKED = {"collapse": ("homog", *COLLAPSE), "turned block": IN_MOTION, "compression": ELASTIC, "shear": ELASTIC}
@@ -41,7 +41,7 @@ HOW = (  # the study is made, for its reader
 )
 
 
-def _cases(walls: Mapping[str, Wall]) -> Iterator[Case]:
+def _cases(walls: Mapping[str, StudiedWall]) -> Iterator[Case]:
     """Every model on every wall that it is asked about, as it is and with each parameter that is varied there."""
     for name, wall in walls.items():
         for model in ASKED[wall.question]:

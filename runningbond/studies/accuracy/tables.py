@@ -60,7 +60,7 @@ def times(ratio: float) -> str:
 
 
 @dataclass(frozen=True)
-class Record:
+class SettingRecord:
     """How one setting did on walls brought to collapse."""
 
     judged: Sequence[Row]  # with a number that can be judged
@@ -74,7 +74,7 @@ class Record:
         return [row[column] for row in self.judged]
 
 
-def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Record]:
+def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, SettingRecord]:
     """Record of each setting on walls brought to collapse, all of them or some; without a number it has none."""
     of_setting: dict[Setting, list[Row]] = {}
     for row in rows["accuracy"]:
@@ -91,11 +91,11 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Rec
         if judged:
             silent = [row["wall"] for row in own if row.get("value") is None]
             error, ratio = max(row["error"] for row in judged), statistics.median(row["ratio"] for row in judged)
-            result[setting] = Record(judged, silent, [row["wall"] for row in certified], error, ratio)
+            result[setting] = SettingRecord(judged, silent, [row["wall"] for row in certified], error, ratio)
     return result
 
 
-def cheapest(result: dict[Setting, Record], tolerance: float, models: Sequence[str]) -> Setting | None:
+def cheapest(result: dict[Setting, SettingRecord], tolerance: float, models: Sequence[str]) -> Setting | None:
     """The cheapest setting of some models with errors within a tolerance on `VARIED`, where its own are none."""
     good = [
         (record.ratio, setting)

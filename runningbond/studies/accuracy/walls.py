@@ -23,7 +23,7 @@ STIFF = 1e12  # Young's modulus of blocks where nothing else is said, the paper'
 
 
 @dataclass(frozen=True, eq=False)
-class Wall:
+class StudiedWall:
     """A wall, what is asked of it, and what the answer is worth."""
 
     scene: Scene
@@ -59,19 +59,19 @@ def _scene(width: float, height: float, friction: float, young: float = STIFF, /
     return scene.with_joint(friction=friction)
 
 
-def pile(width: float, height: float, count: int, friction: float) -> Wall:
+def pile(width: float, height: float, count: int, friction: float) -> StudiedWall:
     """A stack of n blocks b × h, which falls at λ = min(tan φ, b / (n h))."""
     scene = _scene(width, height, friction, courses=[[1]] * count)
-    return Wall(scene, known="exact", answer=(min(friction, width / (count * height)),) * 2)
+    return StudiedWall(scene, known="exact", answer=(min(friction, width / (count * height)),) * 2)
 
 
-def turned_block(width: float, height: float) -> Wall:
+def turned_block(width: float, height: float) -> StudiedWall:
     """A block that has turned by θ about its corner bears λ = tan(α − θ), tan α = b / h."""
     scene = _scene(width, height, 0.9, courses=[[1]])
-    return Wall(scene, "turned block", "exact", (math.tan(math.atan2(width, height) - TURNED),) * 2)
+    return StudiedWall(scene, "turned block", "exact", (math.tan(math.atan2(width, height) - TURNED),) * 2)
 
 
-def elastic_cell(young: float, question: Question) -> Wall:
+def elastic_cell(young: float, question: Question) -> StudiedWall:
     """A periodic cell of running bond.
 
     Compressed across its bed joints, blocks without lateral strain are springs in series with them,
@@ -80,7 +80,7 @@ def elastic_cell(young: float, question: Question) -> Wall:
     scene = _scene(0.24, 0.06, 0.6, young, length=1.44, height=0.36)
     in_series = 1 / (1 / (0.06 * joint_stiffness(scene.joint).normal) + 1 / young)
     answer = in_series if question == "compression" else rigid_moduli(scene).a1212
-    return Wall(scene, question, "exact", (answer, answer))
+    return StudiedWall(scene, question, "exact", (answer, answer))
 
 
 def square_panel(courses: int) -> Scene:
@@ -89,15 +89,20 @@ def square_panel(courses: int) -> Scene:
 
 
 @cache
-def accuracy_walls() -> dict[str, Wall]:
+def accuracy_walls() -> dict[str, StudiedWall]:
     """Walls of which the answer is known, by name."""
     inset = {name: (middle - DIGITS, middle + DIGITS) for name, middle in PUBLISHED_INSET.items()}
     return {
         "block-topples": pile(0.23, 0.36, 1, 0.9),
         "block-slides": pile(0.23, 0.36, 1, 0.497),
         "stack-of-5": pile(0.23, 0.1, 5, 0.9),
-        **{f"{name}-inset": Wall(inset_wall(name), "collapse", "published", known) for name, known in inset.items()},
-        **{name: Wall(published_scene(name), known="certified") for name in ("panel-02", "panel-03", "panel-04")},
+        **{
+            f"{name}-inset": StudiedWall(inset_wall(name), "collapse", "published", known)
+            for name, known in inset.items()
+        },
+        **{
+            name: StudiedWall(published_scene(name), known="certified") for name in ("panel-02", "panel-03", "panel-04")
+        },
         "turned-block": turned_block(0.1, 0.4),
         **{f"cell-{young:.0e}".replace("+", ""): elastic_cell(young, "compression") for young in (1e10, 1e11, 1e12)},
         "cell-shear": elastic_cell(STIFF, "shear"),
@@ -105,19 +110,19 @@ def accuracy_walls() -> dict[str, Wall]:
 
 
 @cache
-def growth_walls() -> dict[str, Wall]:
+def growth_walls() -> dict[str, StudiedWall]:
     """Square panels of one texture, each of four times the blocks of the one before."""
-    return {f"square-{courses}": Wall(square_panel(courses)) for courses in (6, 12, 24, 48)}
+    return {f"square-{courses}": StudiedWall(square_panel(courses)) for courses in (6, 12, 24, 48)}
 
 
 @cache
-def stiffness_walls() -> dict[str, Wall]:
+def stiffness_walls() -> dict[str, StudiedWall]:
     """One wall whose blocks are ever stiffer."""
     stiff = {n: square_panel(12).with_block(young=10.0**n) for n in range(9, 14)}
-    return {f"stiff-1e{n}": Wall(scene, "physical second") for n, scene in stiff.items()}
+    return {f"stiff-1e{n}": StudiedWall(scene, "physical second") for n, scene in stiff.items()}
 
 
 @cache
-def all_walls() -> dict[str, Wall]:
+def all_walls() -> dict[str, StudiedWall]:
     """Every wall of the study, by name."""
     return accuracy_walls() | growth_walls() | stiffness_walls()

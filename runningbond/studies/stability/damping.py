@@ -39,8 +39,8 @@ BUDGET, SHORT = 300_000, 20_000  # steps after which a verdict is given up, in t
 CLOSE = 0.002  # relative width of the edges
 MAPS, MASSIVE, EDGES = "Verdicts by damping", "Verdicts with mass-proportional damping", "Edges"
 LOAD, RATE = "λ / collapse", "c [1/s]"
-LEAST = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
-MOST = f"least 1 − α with which a fall at {1 + BESIDE:g} λ is seen in {SHORT} steps"
+LEAST_LOCAL = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
+MOST_LOCAL = f"least 1 − α with which a fall at {1 + BESIDE:g} λ is seen in {SHORT} steps"
 FEIGNED = f"largest mass-proportional damping that does not feign rest at {1 + BESIDE:g} λ [1/s]"
 
 
@@ -206,8 +206,8 @@ STUDY = Study(
         ),
         EDGES: Part(
             ("what", "wall"),
-            [(LEAST, SLIDING), (MOST, SLIDING), *product([FEIGNED], (SLIDING, W1, TOPPLING))],
-            lambda what, name: {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name),
+            [(LEAST_LOCAL, SLIDING), (MOST_LOCAL, SLIDING), *product([FEIGNED], (SLIDING, W1, TOPPLING))],
+            lambda what, name: {LEAST_LOCAL: least_local, MOST_LOCAL: most_local, FEIGNED: most_mass_rate}[what](name),
         ),
     },
     charts=[

@@ -9,7 +9,7 @@ from .certificates import Certificate, least_multiplier
 
 
 @dataclass(eq=False)
-class Search:
+class SearchLog:
     """What a search has found.
 
     Parameters
@@ -60,4 +60,4 @@ class Search:
         self.cost += number * cost
 
 
-Observer = Callable[[Search], None]
+Observer = Callable[[SearchLog], None]
