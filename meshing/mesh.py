@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runningbond.scene import Array, Indices, Scene, SceneError, frozen
-from runningbond.scene.ranges import whole
+from runningbond.scene.ranges import check_whole_number
 
 from .outline import NodeOutlines, outlines
 from .shapes import shape_of_blocks, triangulate
@@ -77,7 +77,7 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     SceneError
         For a number of cells that is none or too large, and where gmsh cannot be loaded.
     """
-    whole("cells", cells)
+    check_whole_number("cells", cells)
     if 8 * cells**2 * len(scene.blocks) > MOST_TRIANGLES:
         raise SceneError("cells", f"gives more than {MOST_TRIANGLES} triangles; take fewer cells", cells)
     outline = outlines(scene, cells)

@@ -13,7 +13,7 @@ from scipy.stats import CensoredData, lognorm
 from .models import TOLERANCE, Model
 from .scene import Array, Mask, SceneError
 from .scene.history import STANDARD_GRAVITY
-from .scene.ranges import whole
+from .scene.ranges import check_whole_number
 from .sweeps import check_wall, sweep
 from .tables import Table
 from .wall import Wall
@@ -101,8 +101,8 @@ def fragility(
     check_wall(wall)
     if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
         raise SceneError("load.history.file", "is missing: the record that others are to take the place of")
-    whole("draws", draws)
-    whole("seed", seed, least=0)
+    check_whole_number("draws", draws)
+    check_whole_number("seed", seed, least=0)
     if isinstance(records, (str, bytes)) or not isinstance(records, Iterable):
         raise SceneError("records", "must be a list of files", records)
     names = [str(record) for record in records]

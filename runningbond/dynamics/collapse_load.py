@@ -254,8 +254,8 @@ def _never_fallen(
     outcome: Outcome, scene: Scene, run: Run, result: LoadSteps, is_self_locking: Callable[[], bool]
 ) -> Outcome:
     """Outcome of a wall that no load brought down."""
-    locks = is_self_locking()
-    if locks and result.verdict == "stable":
+    self_locking = is_self_locking()
+    if self_locking and result.verdict == "stable":
         message = "self-locking: it bore every load up to the largest, and joint forces balance any multiple of it"
         return replace(outcome, status="unbounded", message=message)
     message = f"it bore every load tried, the largest of them {result.lower:.3g}"
@@ -267,7 +267,7 @@ def _never_fallen(
         )
     if result.verdict != "stable":
         message = "the budget ran out: the wall neither rested nor fell"
-        message += ", though joint forces balance any multiple of the load" if locks else ""
+        message += ", though joint forces balance any multiple of the load" if self_locking else ""
     return replace(outcome, lower=result.lower, message=message)
 
 

@@ -61,7 +61,7 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower`
         and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
-    traverses, locks = list[Traverse](), cache(is_self_locking)
+    traverses, self_locking = list[Traverse](), cache(is_self_locking)
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
         loaded = put_on_dead_load(resting, criteria, observe)
@@ -76,7 +76,7 @@ def collapse_of_led(
         run.led = True
         lead = Lead(scene, run, state, criteria, observe, points)
         if not scene.is_led:
-            lead = _push(lead, distance, LOCKED if locks() else np.inf)
+            lead = _push(lead, distance, LOCKED if self_locking() else np.inf)
         for duration in _durations(lead, loaded.rest):
             traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), not lead.settles))
             last = lead.go(traverse, lead.longest / duration)
@@ -103,7 +103,7 @@ def collapse_of_led(
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(traverse.best)))
-    if outcome.status == "undecided" and outcome.upper is None and not lead.settles and locks():
+    if outcome.status == "undecided" and outcome.upper is None and not lead.settles and self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
     return outcome

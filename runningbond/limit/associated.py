@@ -49,14 +49,14 @@ class LimitState:
     ----------
     system, forces
         The equilibrium equations, and the solution of the linear program.
-    rests, locks
+    rests, self_locking
         Whether admissible forces balance the dead load, and any multiple of the live load; None if nobody asked.
     """
 
     system: Equilibrium
     forces: ForceSolution
     rests: bool | None = None
-    locks: bool | None = None
+    self_locking: bool | None = None
 
     @property
     def jumps(self) -> tuple[Array, Array]:
@@ -214,7 +214,7 @@ def _proved(system: Equilibrium) -> LimitState | None:
     if state.forces.status == "infeasible" and stands_under_dead_load(dead) is False:
         return replace(state, rests=False)
     if state.forces.status == "unbounded" and _balances_any_multiple(system):
-        return replace(state, locks=True)
+        return replace(state, self_locking=True)
     return None
 
 
@@ -304,7 +304,7 @@ def judge(state: LimitState) -> tuple[Status, str]:
         return "collapse", message if system.crushing is None else f"{message}; {crushing_note(system, state.forces)}"
     if program == "budget":
         return "undecided", INTERRUPTED
-    if state.locks or _balances_any_multiple(system):
+    if state.self_locking or _balances_any_multiple(system):
         if system.has_support:
             return "unbounded", JAMMED
         return "unbounded", "self-locking: admissible forces balance any multiple of the live load"

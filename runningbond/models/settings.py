@@ -8,7 +8,7 @@ import numpy as np
 
 from runningbond.joints.points import Rule
 from runningbond.scene import Scene, SceneError
-from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO, whole
+from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO, check_whole_number
 
 Check: TypeAlias = Callable[[str, object], object]
 """Refuses a value under a key."""
@@ -39,11 +39,11 @@ def check_observer(key: str, value: object) -> None:
 CHECKS: Mapping[str, Check] = {
     "collapse": ABOVE_ZERO.take,
     "first_step": ABOVE_ZERO.take,
-    "budget": whole,
-    "past": partial(whole, least=0),
-    "starts": whole,
-    "workers": whole,
-    "programs": whole,
+    "budget": check_whole_number,
+    "past": partial(check_whole_number, least=0),
+    "starts": check_whole_number,
+    "workers": check_whole_number,
+    "programs": check_whole_number,
     "mass_scaling": _true_or_false,
     "modes": _modes,
     "rule": _rule,
@@ -56,7 +56,7 @@ OPTIONAL = ("programs", "modes", "rule")
 NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements", "distance")
 """Settings that mean nothing where the ground moves."""
 
-OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take, "observe": check_observer}
+OF_MOTIONS: Mapping[str, Check] = {"rows": check_whole_number, "after": AT_LEAST_ZERO.take, "observe": check_observer}
 """Checks of settings of a response."""
 
 

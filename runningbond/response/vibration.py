@@ -23,7 +23,7 @@ from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, put_
 from runningbond.dynamics.ties import YIELD
 from runningbond.dynamics.vibrations import stiffness_matrix
 from runningbond.scene import Array, Scene, SceneError
-from runningbond.scene.ranges import whole
+from runningbond.scene.ranges import check_whole_number
 
 DENSE = 200
 """Freedoms up to which all modes are computed at once."""
@@ -65,7 +65,7 @@ def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
     SceneError
         For a wall that does not come to rest, or is not pressed together; for a number of vibrations that is none.
     """
-    whole("count", count)
+    check_whole_number("count", count)
     loaded = put_on_dead_load(run, Criteria(collapse=U_CRIT * scene.block_sizes[run.system.owner]))
     if loaded.verdict != "stable":
         raise SceneError(scene.title, "does not come to rest under its dead load")

@@ -70,7 +70,7 @@ def vector(key: str, value: Any) -> tuple[float, float]:
     return numbers[0], numbers[1]
 
 
-def whole(key: str, value: object, *, least: int = 1) -> None:
+def check_whole_number(key: str, value: object, *, least: int = 1) -> None:
     """Refuse what is no whole number, or less than one."""
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         raise SceneError(key, f"must be a whole number, at least {least}", value)
