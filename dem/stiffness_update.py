@@ -93,7 +93,7 @@ class ResultantWall:
 
 def resultant_wall(scene: Scene, arm: float = 0.5) -> ResultantWall:
     """Set up a scene's resultants, with l_c the given share of each joint's length."""
-    middles = joint_points(scene.joints, scene.thickness, gauss(1))
+    middles = joint_points(scene.joints, scene.thickness_of_joints, gauss(1))
     normal, shear = (k * middles.area for k in wall_stiffness(scene, middles.joint))
     length = scene.joints.length
     jump = jump_operator(middles, scene.blocks.centroid)

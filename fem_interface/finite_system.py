@@ -54,7 +54,6 @@ class DeformableContacts:
 
     def __init__(self, blocks: NodeOutline) -> None:
         self.blocks, self.outline, self._materials = blocks, blocks.outline, ContactMaterials(blocks.scene)
-        self._thickness = blocks.scene.thickness
         self._of_joints: tuple[Indices, Indices, Array] = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
         undeformed = self.find(np.zeros(len(blocks.wall.mass)), self.outline.margin)
         area = self._areas(undeformed)
@@ -73,7 +72,7 @@ class DeformableContacts:
         # An end stands for its side up to half-way from the first point that is far enough inside the arc to bear.
         length = self.blocks.nodes.length[facet] / self.blocks.parts
         passed = np.floor(np.maximum(self.blocks.sides.inset[corner], 0.0) / length + HALF)
-        area = np.minimum(ends.area, self._thickness * (passed + 0.5) * length)
+        area = np.minimum(ends.area, self.outline.thickness_between(e, f) * (passed + 0.5) * length)
         inner = self._inner(rigid, margin)
         contacts = Contacts(
             ends.motion,
@@ -106,7 +105,8 @@ class DeformableContacts:
         for here in np.split(np.arange(len(own)), np.flatnonzero(np.diff(joint[own])) + 1):
             place = along[here]
             borders = np.concatenate([place[:1], (place[1:] + place[:-1]) / 2, place[-1:]])
-            whole = self._thickness * joints.length[joint[own[here[0]]]]
+            number = joint[own[here[0]]]
+            whole = self.blocks.scene.thickness_of_joints[number] * joints.length[number]
             area[own[here]] = whole * (np.diff(borders) / np.ptp(place) if len(here) > 1 else 1.0)
         return area
 
@@ -140,7 +140,7 @@ class DeformableContacts:
         rows = (len(outline.radius) + point, on, of_a[pair], after[on], e[pair], f[pair])
         joint = outline.joint_of(e, f)[pair]
         length_of = nodes.length[points.facet[[point, point - 1]]] / self.blocks.parts
-        area = self._thickness * length_of.sum(axis=0) / 2
+        area = outline.thickness_between(own, other)[pair] * length_of.sum(axis=0) / 2
         still = np.zeros(len(point))
         return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, joint, still > 0)
 

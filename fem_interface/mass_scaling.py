@@ -200,7 +200,7 @@ def _kinds(wall: ModalWall, exponent: float, of_joints: float) -> list[_Kind]:
     joint = wall.elements
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
-    inertia = wall.scene.inertial_density * wall.scene.thickness * wall.scene.blocks.area
+    inertia = wall.scene.inertial_mass
     part = joint_shares(np.where(wall.scene.fixed, np.inf, inertia)[block], exponent)
     normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne], closed=True)
     springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)

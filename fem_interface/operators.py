@@ -187,7 +187,7 @@ def joint_elements(
         position.transpose(1, 0, 2).reshape(-1, 2),
         np.tile(normal, (n, 1)),
         np.tile(tangent, (n, 1)),
-        (scene.thickness * length * share.T).ravel(),
+        (scene.thickness_of_joints[mesh.joint[element]] * length * share.T).ravel(),
     )
     return JointElements(element, np.column_stack([a0, a1, b0, b1]), normal, weights.transpose(1, 0, 2).copy(), result)
 

@@ -84,4 +84,4 @@ def _moduli(scene: Scene, points: JointPoints, jump: Jump, blocks: Sequence[_Mod
     scale = 1 / np.sqrt(np.diag(energy)[:n])
     inner, coupling = energy[:n, :n] * scale[:, None] * scale, energy[:n, n:] * scale[:, None]
     condensed = energy[n:, n:] - coupling.T @ np.linalg.pinv(inner, 1e-12, hermitian=True) @ coupling
-    return np.asarray(condensed / (scene.blocks.area[inside].sum() * scene.thickness)), n
+    return np.asarray(condensed / (scene.blocks.area[inside] @ scene.thickness_of_blocks[inside])), n

@@ -138,7 +138,8 @@ def _modes_of(
     density, nodes = float(scene.inertial_density[block]), nodes_of(mesh, block)
     held = held_displacements(mesh, scene, block)
     further = np.zeros((len(held), len(M) - held.shape[1]))
-    K, M = scene.thickness * K, density * scene.thickness * M
+    thickness = float(scene.thickness_of_blocks[block])
+    K, M = thickness * K, density * thickness * M
     modes = block_modes(points, K, M, np.hstack([held, further]), count)
     modes = replace(modes, inert=modes.inert * (scene.density[block] / density))
     vertices = 2 * (nodes.stop - nodes.start)

@@ -112,8 +112,8 @@ class Wall:
         keys
             The other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names
             (``density`` [kg/m³], ``young`` [Pa], ``friction``, ``normal_stiffness`` and ``shear_stiffness`` [Pa/m], or
-            ``mortar`` in their place); of ``[wall]`` ``first_course``, ``ends`` and, in place of `height` and
-            `block_height`, ``course_heights``; whole tables and what stands at the
+            ``mortar`` in their place); of ``[wall]`` ``first_course``, ``ends``, a list of tables ``opening`` and, in
+            place of `height` and `block_height`, ``course_heights``; whole tables and what stands at the
             file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
             more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
             lateral unless given.
@@ -197,7 +197,7 @@ class Wall:
 
     @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
-        table_of = TABLE_OF | dict.fromkeys(("first_course", "ends", "course_heights"), "wall")
+        table_of = TABLE_OF | dict.fromkeys(("first_course", "ends", "course_heights", "opening"), "wall")
         tables: list[dict[str, Any]] = []
         for key, value in keys.items():
             if key not in table_of and key not in WHOLE:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from runningbond.joints import wall_points, wall_rule
-from runningbond.pictures.legend import CONDITIONS, strength, used_block_materials, used_joint_materials
+from runningbond.pictures.legend import CONDITIONS, strength, thickness_text, used_block_materials, used_joint_materials
 from runningbond.pictures.quantities import beginning, counted, millimetres, minus, pair, readable, signed
 from runningbond.scene import (
     ANCHOR,
@@ -40,10 +40,11 @@ def _blocks(scene: Scene) -> Iterator[Row]:
         own, material = (scene.material_of_block == k) & scene.masonry, scene.block_materials[k]
         mass = float(scene.mass[own].sum())
         count = counted(len(set(scene.part_of[own])), "block")
-        yield f"  of {material.name}", f"{count} of {material.density:g} kg/m³, {_mass(scene, mass)}"
+        thick = f" and {material.thickness:.4g} m" if material.thickness else ""
+        yield f"  of {material.name}", f"{count} of {material.density:g} kg/m³{thick}, {_mass(scene, mass)}"
     ends = [[signed(scene.blocks.coordinate(float(value))) for value in corner] for corner in (low, high)]
     x, y = (" … ".join(both) for both in zip(*ends, strict=True))
-    yield "extent", f"x {x} m, y {y} m, {scene.thickness:.4g} m thick"
+    yield "extent", f"x {x} m, y {y} m, {thickness_text(scene)}"
     yield "mass of the wall", f"{float(scene.mass[scene.wall].sum()):.5g} kg"
     gravity = float(np.hypot(*scene.load.gravity))
     yield "weight of what moves", readable(gravity * float(scene.mass[~scene.fixed].sum()), "N")

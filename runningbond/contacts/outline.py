@@ -39,7 +39,7 @@ class Outline:
     straight: Array  # (nv,) and between its arcs, with what it runs on by
     ends: Indices  # (nv, 2) corners at its start and at its end
     run_on: Array  # (nv, 2) how far it runs on there [m]
-    thickness: float  # out-of-plane thickness [m]
+    thickness: Array  # (nb,) out-of-plane thickness of each block [m]
     held: Mask  # (nb,) blocks between which nothing can happen
     # (nj,) number of the two sides of each joint of the undeformed wall, ascending (`side_pair`), and (nj,) its joint
     joined: tuple[Indices, Indices]
@@ -79,7 +79,7 @@ class Outline:
         sides = normal, length, straight + runs_on.sum(axis=1), ends, runs_on
         joined = _joined_sides(blocks, normal, length, scene.joints)
         parts = ConvexParts.of(blocks, normal)
-        return cls(blocks, parts, *corners, *sides, scene.thickness, scene.fixed, joined, scene.joints)
+        return cls(blocks, parts, *corners, *sides, scene.thickness_of_blocks, scene.fixed, joined, scene.joints)
 
     @property
     def margin(self) -> float:
@@ -91,6 +91,11 @@ class Outline:
         """Distance of the farthest corner of each block from its centroid, ``(nb,)`` [m]."""
         blocks = self.blocks
         return np.maximum.reduceat(np.hypot(*(blocks.vertices - blocks.centroid[blocks.owner]).T), blocks.first[:-1])
+
+    def thickness_between(self, e: Indices, f: Indices) -> Array:
+        """Out-of-plane thickness [m] that sides ``(n,)`` of two blocks share: that of the thinner one, ``(n,)``."""
+        owner = self.blocks.owner
+        return np.asarray(np.minimum(self.thickness[owner[e]], self.thickness[owner[f]]))
 
     def joint_of(self, e: Indices, f: Indices) -> Indices:
         """Joint that sides made on the undeformed wall, −1 where they made none, ``(n,)``."""

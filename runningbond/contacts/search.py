@@ -266,7 +266,7 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
     by_then = outline.margin * np.minimum(lean / FLAT, 1.0)
     later = np.clip(overlap, np.clip(by_then, LEAST_OVERLAP * shorter, shorter / 2), shorter / 2)
     shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
-    return shared * outline.thickness / 2
+    return shared * outline.thickness_between(e, f) / 2
 
 
 def position_of(keys: Indices, sought: Indices) -> Indices:

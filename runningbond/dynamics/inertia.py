@@ -61,7 +61,7 @@ def beam_note(scene: Scene) -> str:
     if scene.beam is None:
         return ""
     beam = scene.beam.block
-    inertia = scene.inertial_density[beam] * scene.thickness * scene.blocks.area[beam]
+    inertia = scene.inertial_mass[beam]
     if np.isclose(scene.beam.mass, inertia):
         return ""
     does = "weighs, and moves with the inertia of," if scene.history else "moves with the inertia of"

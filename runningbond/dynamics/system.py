@@ -256,7 +256,7 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
     """
     gravity = float(np.hypot(*scene.load.gravity))
     each = np.full(len(scene.blocks), strength.strongest or float(np.abs(live).max()) or 1.0)
-    inertia = scene.inertial_density * scene.thickness * scene.blocks.area
+    inertia = scene.inertial_mass
     force = gravity * inertia if gravity > 0 else each
     return np.asarray(force[block] * np.sqrt(mass / inertia[block]))
 

@@ -90,12 +90,14 @@ class JointPoints:
         return JointPoints(**{column.name: getattr(self, column.name)[chosen] for column in fields(self)})
 
 
-def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, inset: float | Array = 0.0) -> JointPoints:
+def joint_points(
+    joints: Joints, thickness: float | Array, rule: Rule | None = None, inset: float | Array = 0.0
+) -> JointPoints:
     """Lay a quadrature rule on every joint.
 
     Parameters
     ----------
-    thickness
+    thickness : float or (nj,) float
         Out-of-plane thickness [m].
     rule
         Quadrature rule; two Lobatto points where none is given.
@@ -123,7 +125,7 @@ def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, ins
     n = len(rule.nodes)
     reach = length / 2 - np.broadcast_to(inset, len(joints))[:, None]
     position = (start + stop)[:, None] / 2 + (reach * rule.nodes)[:, :, None] * tangent[:, None]
-    area = thickness * length * rule.weights / 2
+    area = np.broadcast_to(thickness, len(joints))[:, None] * length * rule.weights / 2
     return JointPoints(
         np.repeat(np.arange(len(joints)), n),
         np.repeat(joints.block, n, axis=0),

@@ -22,7 +22,7 @@ LEAST = 3
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
     """Lay a quadrature rule on every joint of a scene, its ends moved in by the joint's inset."""
-    return joint_points(scene.joints, scene.thickness, rule, wall_inset(scene))
+    return joint_points(scene.joints, scene.thickness_of_joints, rule, wall_inset(scene))
 
 
 def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:

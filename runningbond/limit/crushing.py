@@ -130,7 +130,7 @@ def crushing(scene: Scene, force_unit: float, strongest: float = STRONGEST) -> C
     """The joints of a scene that crush, those beyond the strongest left out; None if there are none."""
     materials, joint = [scene.joint_materials[k] for k in scene.material_of_joint], may_crush(scene)
     strength = np.array([materials[k].compressive_strength for k in joint], dtype=float)
-    area = scene.joints.length[joint] * scene.thickness / force_unit
+    area = scene.joints.length[joint] * scene.thickness_of_joints[joint] / force_unit
     crushes = strength * area <= strongest
     joint, strength, area = joint[crushes], strength[crushes], area[crushes]
     if not len(joint):

@@ -22,7 +22,7 @@ def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
     """
     if any(each.elasticity is None for each in scene.materials_of_joints):
         return None
-    points = joint_points(scene.joints, scene.thickness, gauss(2))  # which are exact for what is linear along a joint
+    points = joint_points(scene.joints, scene.thickness_of_joints, gauss(2))  # exact for what is linear along a joint
     normal, shear = (k * points.area for k in wall_stiffness(scene, points.joint))
     free = movable_freedoms(scene)
     jump = jump_operator(points, scene.blocks.centroid)

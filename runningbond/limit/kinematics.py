@@ -73,7 +73,8 @@ def tie_operator(scene: Scene) -> csr_array:
 
 def mass_matrix_diagonal(scene: Scene) -> Array:
     """Mass, mass and polar moment of inertia of each block in motion, ``(3 nb,)`` [kg, kg, kg m²]."""
-    inertia = scene.inertial_density * scene.thickness * np.array([*[scene.blocks.area] * 2, scene.blocks.polar_moment])
+    density = scene.inertial_density * scene.thickness_of_blocks
+    inertia = density * np.array([*[scene.blocks.area] * 2, scene.blocks.polar_moment])
     return np.asarray(inertia.T.ravel())
 
 

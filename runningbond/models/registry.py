@@ -29,7 +29,7 @@ from .settings import check_observer, check_response_settings, check_settings
 if TYPE_CHECKING:
     from runningbond.response import Response  # which needs a compiler
 
-DRY = frozenset({"block.density", "joint.friction"})
+DRY = frozenset({"block.density", "block.thickness", "joint.friction"})
 STRENGTH = DRY | {"joint.law", "joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
 CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}

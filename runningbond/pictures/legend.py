@@ -30,10 +30,17 @@ def wall_caption(scene: Scene) -> Caption:
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
     density += "" if any(scene.load.gravity) else ", no gravity"
     n = int(scene.part_of.max()) + 1
-    size = f"{length:.4g} × {height:.4g} m, {scene.thickness:.4g} m thick{density}"
+    size = f"{length:.4g} × {height:.4g} m, {thickness_text(scene)}{density}"
     counts = f"{counted(n, 'block')}, {counted(len(scene.joints), 'joint')}"
     key = [*_materials(scene), *_bodies(scene), *_loads(scene)]
     return Caption(wall_title(scene.title), "", [size, counts], key, columns=1)
+
+
+def thickness_text(scene: Scene) -> str:
+    """How thick a wall is: from the thinnest of its blocks to the thickest."""
+    thickness = scene.thickness_of_blocks[scene.masonry]
+    sizes = dict.fromkeys(f"{size:.4g}" for size in (thickness.min(), thickness.max()))
+    return f"{' … '.join(sizes)} m thick"
 
 
 def block_colours(scene: Scene) -> Array:
@@ -86,7 +93,9 @@ def _materials(scene: Scene) -> list[Any]:
         for k in used:
             block, colour = scene.block_materials[k], BLOCK_COLOURS[k % len(BLOCK_COLOURS)]
             name = "blocks" if k == 0 else block.name
-            handles.append(Patch(fc=colour, ec="0.5", lw=0.5, label=f"{name}: {block.density:g} kg/m³"))
+            thick = f", {block.thickness:.4g} m thick" if block.thickness else ""
+            label = f"{name}: {block.density:g} kg/m³{thick}"
+            handles.append(Patch(fc=colour, ec="0.5", lw=0.5, label=label))
     bed, several = scene.joints.is_bed, len(used_joint_materials(scene)) > 1
     for k in used_joint_materials(scene):
         own = scene.material_of_joint == k

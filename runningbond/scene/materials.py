@@ -32,6 +32,8 @@ class BlockMaterial:
         Young's modulus [Pa]; None where the scene leaves it out. Rigid models do not read it.
     poisson
         Poisson's ratio.
+    thickness
+        Out-of-plane thickness of its blocks [m]; None is that of the wall.
     name
         What `assign` calls it in a scene file.
 
@@ -44,6 +46,7 @@ class BlockMaterial:
     density: Positive
     young: Positive | None = None
     poisson: Annotated[float, Range(above=-1.0, most=0.5)] = 0.0
+    thickness: Positive | None = None
     name: str = "block"
 
     def __post_init__(self) -> None:

@@ -126,6 +126,14 @@ def _friction(key: str, friction: float) -> Iterator[str]:
         yield f"{key} = {friction:.4g}: is tan φ, and below {least:g}; {hint}"
 
 
+def _thicknesses(scene: Scene) -> Iterator[tuple[str, float]]:
+    """What blocks of the wall are as thick as, by their keys."""
+    for k in np.unique(scene.material_of_block[scene.masonry]):
+        material = scene.block_materials[k]
+        own = material.thickness
+        yield ("wall.thickness", scene.thickness) if own is None else (f"{table_of(material)}.thickness", own)
+
+
 def _sizes(scene: Scene) -> Iterator[str]:
     """Sizes of the wall, gravity, and settlements."""
     low, high = scene.blocks.extent(scene.masonry)
@@ -134,10 +142,11 @@ def _sizes(scene: Scene) -> Iterator[str]:
     yield from SIZE.doubts(f"wall{': ' if scene.bond is None else '.'}{side}", longest)  # outlines have no such key
     middling = float(np.median(np.sqrt(scene.blocks.area[scene.masonry])))
     least, most = (share * middling for share in THICKNESS)
-    if not least <= scene.thickness <= most:
-        what = f"is odd for blocks of about {middling:.3g} m"
-        hint = f"; are {scene.thickness:g} mm meant?" if least <= 1e-3 * scene.thickness <= most else ""
-        yield f"wall.thickness = {scene.thickness:g}: {what}{hint}"
+    for key, thickness in dict(_thicknesses(scene)).items():
+        if not least <= thickness <= most:
+            what = f"is odd for blocks of about {middling:.3g} m"
+            hint = f"; are {thickness:g} mm meant?" if least <= 1e-3 * thickness <= most else ""
+            yield f"{key} = {thickness:g}: {what}{hint}"
     yield from GRAVITY.doubts("load.gravity", float(np.hypot(*scene.load.gravity)))
     moved = float(np.hypot(*scene.support_motion[:, :2].T).max())
     if moved > LARGEST_SETTLEMENT * longest:

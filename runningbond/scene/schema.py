@@ -51,7 +51,7 @@ PLAIN: Schema = {
 LISTED: Schema = {
     "title": "every table",
     "wall": {**BLOCKS, "courses": [[1, 1, 1]] * 3, "course_heights": [0.2, 0.2, 0.2]},
-    "materials": {"oak": {"density": 700.0, "young": 1e10, "poisson": 0.3}},
+    "materials": {"oak": {"density": 700.0, "young": 1e10, "poisson": 0.3, "thickness": 0.3}},
     "joints": {"glue": {"friction_angle": 35.0, **STRENGTH, **CRUSHING, "mortar": MORTAR, "softening": "linear"}},
     "inner_joint": {"friction": 0.7, **SPRINGS},
     "assign": [

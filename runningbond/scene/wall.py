@@ -66,7 +66,7 @@ class Scene:
     joints
         Joints with at least one movable side.
     thickness
-        Out-of-plane thickness [m].
+        Out-of-plane thickness [m] of blocks whose material has none of its own.
     block_materials, joint_materials
         Materials of blocks and of joints, the default ones first.
     material_of_block : (nb,) int
@@ -180,7 +180,7 @@ class Scene:
     def _given_density(self) -> Array:
         density = np.array([material.density for material in self.block_materials])[self.material_of_block]
         if self.beam is not None:
-            density[self.beam.block] = self.beam.mass / (self.thickness * self.blocks.area[self.beam.block])
+            density[self.beam.block] = self.beam.mass / self._extruded[self.beam.block]
         return frozen(density)
 
     @cached_property
@@ -195,8 +195,8 @@ class Scene:
     @cached_property
     def density_in_motion(self) -> Array:
         """Density of each block as it vibrates, ``(nb,)`` [kg/m³]: its own, a beam's such that it has some mass."""
-        mass = float(self._given_density[self.masonry] @ self.blocks.area[self.masonry])
-        beam = 0.0 if self.beam is None else float(self.blocks.area[self.beam.block].sum())
+        mass = float(self._given_density[self.masonry] @ self._extruded[self.masonry])
+        beam = 0.0 if self.beam is None else float(self._extruded[self.beam.block].sum())
         return self._with_beam_of(LIGHTEST * mass / beam if beam else 0.0)
 
     def _with_beam_of(self, least: float) -> Array:
@@ -209,7 +209,30 @@ class Scene:
     @cached_property
     def mass(self) -> Array:
         """Mass of each block, ``(nb,)`` [kg]."""
-        return frozen(self.density * self.thickness * self.blocks.area)
+        return frozen(self.density * self.thickness_of_blocks * self.blocks.area)
+
+    @cached_property
+    def inertial_mass(self) -> Array:
+        """Mass with which each block resists acceleration, ``(nb,)`` [kg]; see `inertial_density`."""
+        return frozen(self.inertial_density * self.thickness_of_blocks * self.blocks.area)
+
+    @cached_property
+    def thickness_of_blocks(self) -> Array:
+        """Out-of-plane thickness of each block, ``(nb,)`` [m]; a beam and the ground are as thick as the thickest."""
+        own = np.array([material.thickness or self.thickness for material in self.block_materials])
+        thickness = own[self.material_of_block]
+        thickness[~self.masonry] = thickness[self.masonry].max()
+        return frozen(thickness)
+
+    @cached_property
+    def thickness_of_joints(self) -> Array:
+        """Out-of-plane thickness of each joint, ``(nj,)`` [m]: that of the thinner block, within the other's."""
+        return frozen(self.thickness_of_blocks[self.joints.block].min(axis=1))
+
+    @cached_property
+    def _extruded(self) -> Array:
+        """Volume of each block, ``(nb,)`` [m³]."""
+        return frozen(self.thickness_of_blocks * self.blocks.area)
 
     @cached_property
     def settlement(self) -> Settlement | None:

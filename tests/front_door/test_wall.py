@@ -216,6 +216,15 @@ def test_what_a_file_may_not_say_python_may_not_say(keys: dict[str, Any], said: 
     assert "\n" not in str(refusal.value)
 
 
+def test_openings_are_given_as_a_file_has_them() -> None:
+    size = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2, "density": 1800.0, "friction": 0.6}
+    window = {"from": [0.8, 0.4], "to": [1.2, 0.8], "lintel": {"height": 0.2, "bearing": 0.2}}
+    wall = rb.Wall.running_bond(length=2.0, height=1.2, opening=[window], **size)
+    whole = rb.Wall.running_bond(length=2.0, height=1.2, **size)
+    blocks, solid = (each.scene.blocks.area[each.scene.wall].sum() for each in (wall, whole))
+    assert solid - blocks == pytest.approx(0.4 * 0.4)
+
+
 def test_courses_of_different_heights_are_given_in_place_of_a_height() -> None:
     """As `wall.course_heights` of a file."""
     size = {"block_width": 0.4, "thickness": 0.2, "density": 1800.0, "friction": 0.6}
