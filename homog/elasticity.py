@@ -2,8 +2,13 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from runningbond.joints import joint_stiffness
-from runningbond.scene import Scene
+from runningbond.scene import Mask, Scene, SceneError, Stiffness, check_scene
+from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO
+
+from .bond import between_blocks, is_running_bond
 
 
 @dataclass(frozen=True)
@@ -29,26 +34,56 @@ def elastic_moduli(
 ) -> Moduli:
     """Moduli of the infinite wall from blocks b × a [m] and stiffnesses per unit area [Pa/m] of bed and head joints.
 
+    Stiffnesses may be zero, as those of open head joints.
+
+    Raises
+    ------
+    SceneError
+        For numbers that are no sizes or no stiffnesses.
+
     Examples
     --------
     >>> elastic_moduli(240, 60, bed_normal=80, bed_shear=30, head_normal=50, head_shear=20).a1111
     19200.0
     """
-    b, a = block_width, block_height
+    b, a = ABOVE_ZERO.take("block_width", block_width), ABOVE_ZERO.take("block_height", block_height)
+    bed_normal, bed_shear = AT_LEAST_ZERO.take("bed_normal", bed_normal), AT_LEAST_ZERO.take("bed_shear", bed_shear)
+    head_normal = AT_LEAST_ZERO.take("head_normal", head_normal)
+    head_shear = AT_LEAST_ZERO.take("head_shear", head_shear)
     # Shear strain tilts the bond against the heads' shear and the beds' normal stiffness, in series with bed shear.
     tilting = b * head_shear + bed_normal * b**2 / (4 * a)
     sliding = a * bed_shear
-    return Moduli(
-        b * head_normal + bed_shear * b**2 / (4 * a),
-        a * bed_normal,
-        tilting * sliding / (tilting + sliding),
-    )
+    in_series = tilting * sliding / (tilting + sliding) if sliding else 0.0
+    return Moduli(b * head_normal + bed_shear * b**2 / (4 * a), a * bed_normal, in_series)
 
 
 def rigid_moduli(scene: Scene) -> Moduli:
-    """Closed-form moduli [Pa] of a wall's running bond of rigid blocks."""
-    assert scene.bond is not None
-    joint = joint_stiffness(scene.materials_of_joints[0])
-    springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
-    springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
-    return elastic_moduli(scene.bond.width, scene.bond.height, **springs)
+    """Closed-form moduli [Pa] of a wall's running bond of rigid blocks.
+
+    Joints with what the wall stands on have no part in them. Openings, toothed ends and an inset change nothing.
+
+    Raises
+    ------
+    SceneError
+        For walls that are no running bond, whose beds or heads are of several materials or have no stiffness, and
+        whose blocks may crack.
+    """
+    check_scene(scene)
+    bond = scene.bond
+    if bond is None or not is_running_bond(scene, bond):
+        raise SceneError("wall", "has no moduli in closed form: they need running bond of blocks of one size")
+    if scene.inner_joint is not None:
+        raise SceneError("inner_joint", "leaves no moduli in closed form: they need rigid blocks that do not crack")
+    between, beds = between_blocks(scene), scene.joints.is_bed
+    bed, head = (_stiffness(scene, between & chosen, what) for chosen, what in ((beds, "bed"), (~beds, "head")))
+    springs = {"bed_normal": bed.normal, "bed_shear": bed.shear, "head_normal": head.normal, "head_shear": head.shear}
+    return elastic_moduli(bond.width, bond.height, **springs)
+
+
+def _stiffness(scene: Scene, chosen: Mask, what: str) -> Stiffness:
+    """Stiffness of the joints chosen, which are to be of one material."""
+    kinds = [scene.joint_materials[k] for k in np.unique(scene.material_of_joint[chosen])]
+    if len(kinds) != 1:
+        names = ", ".join(each.name for each in kinds)
+        raise SceneError(f"{what} joints", "must be of one material; the closed form has one for each", names)
+    return joint_stiffness(kinds[0])

@@ -16,6 +16,9 @@ import numpy as np
 
 from runningbond.results import Outcome
 from runningbond.scene import Bond, Scene, SceneError, check_scene
+from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO
+
+from .bond import head_places
 
 FINENESS = (1, 4, 8, 16)
 """The fewer of courses and of blocks in one, from which on deviations are told together."""
@@ -37,10 +40,16 @@ def crack_slope(block_width: float, block_height: float, friction: float) -> flo
     more, and bed joints too (`StrengthDomain`). Bed joints allow s = (m / tan φ)^{1/2}, and so do head joints where
     2 μ² (μ m)^{1/2} ≤ 1 + μ m, of any blocks up to μ = 1. Beyond, both give way at the root of
     (1/μ + m − μ) s² − 2 μ m s + m = 0.
+
+    Raises
+    ------
+    SceneError
+        For numbers that are no sizes or no friction.
     """
-    if friction <= 0:
+    b, a = ABOVE_ZERO.take("block_width", block_width), ABOVE_ZERO.take("block_height", block_height)
+    m, mu = 2 * a / b, AT_LEAST_ZERO.take("friction", friction)
+    if mu == 0.0:
         return math.inf
-    m, mu = 2 * block_height / block_width, friction
     if 2 * mu**2 * math.sqrt(mu * m) <= 1 + mu * m:
         return math.sqrt(m / mu)
     return m / (mu * m + math.sqrt((mu * m) ** 2 - m * (1 / mu + m - mu)))
@@ -51,12 +60,20 @@ def lateral_multiplier(slenderness: float, slope: float, friction: float) -> flo
 
     It is 1 / (2 s) where r ≤ s, (3 r − 2 s) / (3 r² − s²) beyond, and never more than tan φ, at which all of it slides.
 
+    Raises
+    ------
+    SceneError
+        For numbers that are no slenderness, no slope (inf is one) or no friction.
+
     Examples
     --------
     >>> round(lateral_multiplier(slenderness=0.5, slope=crack_slope(0.24, 0.06, 0.6), friction=0.6), 4)
     0.5477
     """
-    r, s = slenderness, slope
+    r, s = ABOVE_ZERO.take("slenderness", slenderness), slope
+    if s != math.inf:
+        s = ABOVE_ZERO.take("slope", slope)
+    friction = AT_LEAST_ZERO.take("friction", friction)
     turning = 1 / (2 * s) if r <= s else (3 * r - 2 * s) / (3 * r**2 - s**2)
     return min(turning, friction)
 
@@ -112,6 +129,8 @@ def _bond(scene: Scene) -> Bond:
 
 def _why_not(scene: Scene, bond: Bond) -> str:
     """The first assumption of the closed form that a scene breaks, or nothing."""
+    if scene.extras:
+        return f"it needs a wall without {', '.join(scene.extras)}"
     if not _is_lateral(scene):
         return 'it needs load.live.kind = "lateral", to the right or the left, and no dead load but the weight'
     if len(scene.pins):
@@ -151,13 +170,8 @@ def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     """Whether the head joints are those of running bond: one at every second half block, shifted course by course."""
     movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
-    heads_inside = movable[scene.joints.block].all(axis=1) & ~scene.joints.is_bed
-    middle = (scene.joints.ends[heads_inside].mean(axis=1) - low) / np.array([bond.width / 2, bond.height])
-    column, course = np.rint(middle[:, 0]).astype(int), np.floor(middle[:, 1]).astype(int)
-    if not np.allclose(column, middle[:, 0], rtol=0, atol=1e-3):
-        return False
+    heads = head_places(scene, bond, movable[scene.joints.block].all(axis=1) & ~scene.joints.is_bed, movable)
     columns, courses = np.rint((high - low) / np.array([bond.width / 2, bond.height])).astype(int)
-    heads = set(zip(column.tolist(), course.tolist(), strict=True))
     return any(
         heads == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}
         for parity in (0, 1)

@@ -2,9 +2,9 @@
 
 With macroscopic strain rate D and a rotation ω common to all blocks, the jump across a joint between blocks
 whose centres are Δx apart is (D − Ω) Δx, the same all along it: Δx = (b, 0) across head joints and (±b/2, a)
-across bed joints. Joints that carry a cone of tractions, σ ≤ f_t, |τ| ≤ s + (f_t − σ) tan φ, resist a jump
-(j_n, j_t) with f_t j_n + s |j_t| per unit area if j_n ≥ tan φ |j_t|, and without limit otherwise. The domain is the set
-of stresses Σ whose power Σ : D no admissible D exceeds.
+across bed joints. So tractions may be constant along each joint, too: stresses Σ are carried if some within the
+joints' strength have the power Σ : D on the jumps of every D and ω. Joints bear σ ≤ f_t and
+|τ| ≤ s + (f_t − σ) tan φ, and those with a compressive strength p² + C_ss τ² ≤ f_m² as well, p = max(0, −σ).
 """
 
 from dataclasses import dataclass
@@ -12,8 +12,18 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog
 
-from runningbond.joints import point_strength
-from runningbond.scene import Bond, JointMaterial
+from runningbond.joints.mohr_coulomb import truncated_cone
+from runningbond.scene import Array, Bond, JointMaterial, SceneError
+from runningbond.scene.ranges import SMALLEST, Range
+
+OVER = 1e-10
+"""Share of a cap by which tractions may lie beyond it; where it is more, a tangent is laid there."""
+
+ROUNDS = 100
+"""Most times that tangents are laid; each leaves a quarter of what lies beyond, or less."""
+
+SIDES = np.array([[1.0, 0.0], [0.6, 0.8], [0.6, -0.8], [0.0, 1.0], [0.0, -1.0]])
+"""Where tangents to a cap are laid first, as units of (p, √C_ss τ)."""
 
 
 @dataclass(frozen=True)
@@ -24,33 +34,104 @@ class StrengthDomain:
     joint: JointMaterial
 
     def strength(self, direction: tuple[float, float, float]) -> float:
-        """Largest t for which t (Σ11, Σ22, Σ12), tension positive, is carried [Pa per unit of it]; inf if any is.
+        """Largest t for which t (Σ11, Σ22, Σ12), tension positive, is carried.
 
-        Solved as min π(D) over D with Σ : D = 1, with each joint's slip split into its two senses.
+        Parameters
+        ----------
+        direction
+            Σ11 along the courses, Σ22 across them and Σ12, in any unit.
+
+        Returns
+        -------
+        float
+            t [Pa per unit of the direction]; inf where any is carried.
+
+        Raises
+        ------
+        SceneError
+            For a direction that is not three finite numbers.
+
+        Examples
+        --------
+        >>> dry = JointMaterial(friction=0.6)
+        >>> round(StrengthDomain(Bond(0.24, 0.06), dry).strength((0.0, -1.0, 0.7)), 6)
+        0.0
+        >>> StrengthDomain(Bond(0.24, 0.06), dry).strength((0.0, -1.0, 0.4))
+        inf
         """
-        b, a = self.bond.width, self.bond.height
-        half, n = b / 2, 3
-        resistance = point_strength(self.joint, np.array([a, half, half]))
-        # Jumps [m] of the head and the two bed joints per D11, D22, D12 and ω.
-        opening = np.array([[b, 0, 0, 0], [0, a, half, -half], [0, a, -half, half]], dtype=float)
-        slip = np.array([[0, 0, b, -b], [half, 0, a, a], [-half, 0, a, a]], dtype=float)
-        # Unknowns: D11, D22, D12, ω, then forward and backward slip of each joint.
-        cost = np.concatenate([resistance.tension @ opening, resistance.shear, resistance.shear]) / (a * b)
-        split = np.hstack([slip, -np.eye(n), np.eye(n)])
-        power = np.concatenate([[direction[0], direction[1], 2 * direction[2], 0.0], np.zeros(2 * n)])
-        dilate = np.hstack([-opening, resistance.friction * np.eye(n), resistance.friction * np.eye(n)])
-        scale = float(np.abs(cost).max()) or 1.0
-        result = linprog(
-            cost / scale,
-            A_ub=dilate,
-            b_ub=np.zeros(n),
-            A_eq=np.vstack([split, power]),
-            b_eq=np.append(np.zeros(n), 1.0),
-            bounds=[(None, None)] * 4 + [(0, None)] * (2 * n),
-            method="highs",
-        )
-        if result.status == 2:
+        wanted = _stress(direction)
+        size = float(np.abs(wanted).max())
+        if size == 0.0:
             return float("inf")
-        if result.status != 0 or result.fun is None:
-            raise ArithmeticError(f"strength in direction {direction}: {result.message}")
-        return float(result.fun * scale)
+        friction, tension, shear = truncated_cone(self.joint)
+        crushing = self.joint.compressive_strength
+        unit = max(tension, shear) or crushing or 1.0
+        # Unknowns: t, then σ and τ of a head joint and of the two bed joints of a block.
+        balance = np.column_stack([np.append(-wanted * [1, 1, 2] / size, 0.0), self._powers()])
+        none, one = np.zeros((3, 1)), np.eye(3)
+        rows = np.block([[none, one, 0 * one], [none, friction * one, one], [none, friction * one, -one]])
+        right = np.repeat([tension, shear + friction * tension, shear + friction * tension], 3) / unit
+        if crushing is None:
+            largest, _ = _largest(balance, rows, right)
+        else:
+            largest = self._capped(balance, rows, right, crushing / unit)
+        return max(0.0, largest) * unit / size
+
+    def _powers(self) -> Array:
+        """Power of σ, then τ, of 1 on each joint, by D11, D22, D12 and ω, for the wall's area; ``(4, 6)``."""
+        half, height = 0.5, self.bond.height / self.bond.width
+        opening = np.array([[1, 0, 0, 0], [0, height, half, -half], [0, height, -half, half]])
+        slip = np.array([[0, 0, 1, -1], [half, 0, height, height], [-half, 0, height, height]])
+        share = np.array([height, half, half]) / height
+        return np.hstack([opening.T * share, slip.T * share])
+
+    def _capped(self, balance: Array, rows: Array, right: Array, crushing: float) -> float:
+        """The largest t below caps on pressures, by tangents that are laid where it lies beyond them."""
+        stretch = np.sqrt(self.joint.cap_shear)
+        joint, side = np.repeat(np.arange(3), len(SIDES)), np.tile(SIDES, (3, 1))
+        for _ in range(ROUNDS):
+            tangents = np.zeros((len(joint), 7))
+            tangents[np.arange(len(joint)), 1 + joint] = -side[:, 0]
+            tangents[np.arange(len(joint)), 4 + joint] = stretch * side[:, 1]
+            rows, right = np.vstack([rows, tangents]), np.append(right, np.full(len(joint), crushing))
+            largest, (sigma, tau) = _largest(balance, rows, right)
+            used = np.column_stack([np.maximum(0.0, -sigma), stretch * tau])
+            reach = np.hypot(*used.T)
+            joint = np.flatnonzero(reach > crushing * (1 + OVER))
+            side = used[joint] / reach[joint, None]
+            if not len(joint):
+                break
+        # Shrunk to lie below the caps, tractions carry so much less at most.
+        return largest * crushing / max(float(reach.max()), crushing)
+
+
+def _largest(balance: Array, rows: Array, right: Array) -> tuple[float, Array]:
+    """The largest t, or inf, and tractions σ and τ of the joints ``(2, 3)`` that carry it."""
+    free = [(0, None)] + [(None, None)] * 6
+    found = linprog(
+        [-1, *[0] * 6],
+        A_ub=rows,
+        b_ub=right,
+        A_eq=balance,
+        b_eq=np.zeros(4),
+        bounds=free,
+        method="highs",
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    if found.status == 3:
+        return float("inf"), np.zeros((2, 3))
+    if found.status != 0 or found.x is None:
+        raise ArithmeticError(f"strength of a wall: {found.message}")
+    return float(found.x[0]), found.x[1:].reshape(2, 3)
+
+
+def _stress(direction: object) -> Array:
+    """A direction in the space of stresses as ``(3,)``."""
+    if not isinstance(direction, (tuple, list, np.ndarray)) or np.shape(direction) != (3,):
+        raise SceneError("direction", "must be three numbers, Σ11, Σ22 and Σ12", direction)
+    # What is lost beside the others may be too small for a number of a scene.
+    small = [isinstance(value, float) and abs(value) < SMALLEST for value in direction]
+    if all(small):
+        small = [False] * 3
+    numbers = [0.0 if small[k] else Range().take(f"direction[{k}]", value) for k, value in enumerate(direction)]
+    return np.array(numbers)

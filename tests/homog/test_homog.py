@@ -1,6 +1,7 @@
 """Closed forms of running bond as a continuum."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from homog import StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier
+from homog import Moduli, StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier, rigid_moduli
 from homog.model import deviation
 from runningbond.limit import limit
 from runningbond.scene import Bond, JointMaterial, SceneError
@@ -112,6 +113,143 @@ def test_strength_domain_grows_with_cohesion_and_shrinks_with_a_cut_off() -> Non
     assert StrengthDomain(bond, JointMaterial(0.6, 2.0, 2 / 0.6)).strength((1, -1, 1)) == pytest.approx(2 * whole)
     assert StrengthDomain(bond, JointMaterial(0.6, 1.0, 0.2)).strength((0, 1, 0)) == pytest.approx(0.2)
     assert StrengthDomain(bond, JointMaterial(0.6)).strength((0, 0, 1)) == 0
+
+
+@pytest.mark.parametrize("unit", [1e-90, 1e-12, 1e12, 1e90])
+def test_strength_in_a_direction_does_not_depend_on_the_unit_of_the_direction(unit: float) -> None:
+    """Stresses in Pa, MPa or any other unit: the same stress is on the boundary. It was inf, or negative."""
+    domain = StrengthDomain(Bond(0.24, 0.06), JointMaterial(0.6, 1.0, 1 / 0.6))
+    assert unit * domain.strength((unit, -unit, unit)) == pytest.approx(1.527778, abs=1e-6)
+
+
+def test_joints_that_crush_bound_the_strength_domain() -> None:
+    """Pressed across beds all at f_m; along them heads at f_m and beds, with their cohesion, on half a block each.
+
+    Sheared as well, where cohesion holds heads, beds are on the cap: t² (1 + C_ss k²) = f_m². No strength was infinite.
+    """
+    bond = Bond(0.24, 0.06)
+    domain = StrengthDomain(bond, JointMaterial(0.6, 1.0, compressive_strength=10.0))
+    assert domain.strength((0, -1, 0)) == pytest.approx(10)
+    assert domain.strength((-1, 0, 0)) == pytest.approx(10 + 0.24 / (2 * 0.06) * 1.0)
+    assert domain.strength((0, 0, 1)) == pytest.approx(1)
+    bonded = StrengthDomain(bond, JointMaterial(0.6, 20.0, compressive_strength=10.0))
+    for k in (0.1, 0.5, 2.0):
+        assert bonded.strength((0, -1, k)) == pytest.approx(10 / math.sqrt(1 + 9 * k**2))
+    uncapped = StrengthDomain(bond, JointMaterial(0.6, 20.0, compressive_strength=10.0, cap_shear=0.0))
+    assert uncapped.strength((0, -1, 2)) == pytest.approx(10)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    shape=st.floats(0.2, 5.0),
+    friction=st.floats(0.1, 2.0),
+    cohesion=st.sampled_from([0.0, 0.01, 1.0]),
+    crushing=st.floats(0.2, 50.0),
+    direction=st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda each: max(map(abs, each)) > 0.1),
+)
+def test_strength_with_caps_lies_between_that_of_polygons_in_and_about_them(
+    shape: float, friction: float, cohesion: float, crushing: float, direction: tuple[float, float, float]
+) -> None:
+    """The largest power-conjugate tractions, with a polygon of 200 sides in place of the ellipse, from outside."""
+    found = StrengthDomain(Bond(shape, 1.0), JointMaterial(friction, cohesion, compressive_strength=crushing))
+    # Σ11 = σ_v + b/4a (τ1 − τ2), Σ22 = (σ1 + σ2) / 2, Σ12 = (τ1 + τ2) / 2 = τ_v + b/4a (σ1 − σ2)
+    q = shape / 4
+    balance = np.array([[1, 0, 0, 0, q, -q], [0, 0.5, 0.5, 0, 0, 0], [0, 0, 0, 0, 0.5, 0.5], [0, q, -q, 1, 0, 0]])
+    along = np.array([*direction, direction[2]])[:, None]
+    rows, right = [], []
+    for joint in range(3):
+        sides = [(1, 0, cohesion / friction), (friction, 1, cohesion), (friction, -1, cohesion)]
+        angles = np.linspace(-np.pi / 2, np.pi / 2, 201)
+        sides += [(-np.cos(angle), 3 * np.sin(angle), crushing) for angle in angles]
+        for sigma, tau, most in sides:
+            rows.append(np.zeros(7))
+            rows[-1][[1 + joint, 4 + joint]] = sigma, tau
+            right.append(most)
+    about: Any = linprog(
+        [-1, *[0] * 6],
+        A_ub=rows,
+        b_ub=right,
+        A_eq=np.hstack([-along, balance]),
+        b_eq=np.zeros(4),
+        bounds=[(0, None)] + [(None, None)] * 6,
+    )
+    assert (found.strength(direction) == math.inf) == (about.status == 3)
+    if about.status == 0:
+        largest = float(about.x[0])
+        assert largest * math.cos(np.pi / 400) - 1e-6 <= found.strength(direction) <= largest * (1 + 1e-6) + 1e-6
+
+
+def test_a_direction_is_three_numbers() -> None:
+    domain = StrengthDomain(Bond(0.24, 0.06), JointMaterial(0.6, 1.0))
+    for direction in ((1, 0), (1, 0, 0, 0), 3.0):
+        with pytest.raises(SceneError, match="^direction = .*: must be three numbers"):
+            domain.strength(direction)  # type: ignore[arg-type]
+    with pytest.raises(SceneError, match=r"^direction\[1\] = nan: must be a number"):
+        domain.strength((0.0, math.nan, 0.0))
+
+
+STIFF: dict[str, Any] = {"joint__normal_stiffness": 80e9, "joint__shear_stiffness": 30e9}
+SOFT: dict[str, Any] = {"friction": 0.6, "normal_stiffness": 50e9, "shear_stiffness": 20e9}
+
+
+def test_moduli_of_a_wall_have_the_stiffness_of_its_beds_and_of_its_heads() -> None:
+    """Head joints of a mortar of their own; what the wall stands on has no part. Heads were taken to be as beds are."""
+    heads = {"joint": "soft", "between": ["*", "*"], "orientation": "head"}
+    base = {"joint": "soft", "between": ["*", "ground"]}
+    expected = elastic_moduli(0.24, 0.06, bed_normal=80e9, bed_shear=30e9, head_normal=50e9, head_shear=20e9)
+    assert rigid_moduli(panel(**STIFF, joints={"soft": SOFT}, assign=[heads, base])) == expected
+    assert expected.a1111 == pytest.approx(19.2e9)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"wall__ends": "toothed"}, {"joint__inset": 0.005}, {"wall__first_course": "half"}]
+)
+def test_moduli_are_those_of_the_bond_whatever_its_ends(changes: dict[str, Any]) -> None:
+    assert rigid_moduli(panel(**STIFF, **changes)) == rigid_moduli(panel(**STIFF))
+
+
+def test_walls_that_have_no_moduli_in_closed_form_are_refused() -> None:
+    """Stack bond had those of running bond, blocks that crack those of whole ones; no bond was an AssertionError."""
+    no_bond = panel(**STIFF, wall__block_height=None, wall__height=None, wall__course_heights=[0.1, 0.06, 0.1])
+    other: list[list[list[float]]] = [[[1, 1], [1, 1]], [[2, 2], [1, 2, 1]], [[1, 1]]]
+    for scene in (no_bond, *(courses(each, **STIFF) for each in other)):
+        with pytest.raises(SceneError, match="running bond"):
+            rigid_moduli(scene)
+    with pytest.raises(SceneError, match="inner_joint"):
+        rigid_moduli(panel(**STIFF, inner_joint=SOFT))
+    half = {"joint": "soft", "box": [[0.0, 0.0], [0.7, 2.0]], "orientation": "bed"}
+    with pytest.raises(SceneError, match="bed joints = 'joint, soft': must be of one material"):
+        rigid_moduli(panel(**STIFF, joints={"soft": SOFT}, assign=[half]))
+
+
+def test_moduli_of_open_joints_are_none() -> None:
+    closed = elastic_moduli(0.24, 0.06, bed_normal=1.0, bed_shear=1.0, head_normal=0.0, head_shear=0.0)
+    assert closed.a1111 == pytest.approx(0.24**2 / (4 * 0.06))
+    assert elastic_moduli(0.24, 0.06, bed_normal=0, bed_shear=0, head_normal=0, head_shear=0) == Moduli(0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "key"),
+    [
+        (lambda: crack_slope(-1.0, 0.06, 0.6), "block_width"),
+        (lambda: crack_slope(0.24, 0.06, math.nan), "friction"),
+        (lambda: lateral_multiplier(-1.0, 0.9, 0.6), "slenderness"),
+        (lambda: lateral_multiplier(1.0, 0.0, 0.6), "slope"),
+        (lambda: elastic_moduli(1, 0, bed_normal=1, bed_shear=1, head_normal=1, head_shear=1), "block_height"),
+        (lambda: elastic_moduli(1, 1, bed_normal=1, bed_shear=-1, head_normal=1, head_shear=1), "bed_shear"),
+    ],
+)
+def test_numbers_that_mean_nothing_are_refused_by_name(call: Callable[[], object], key: str) -> None:
+    """A modulus or a multiplier came out, of negative ones as well."""
+    with pytest.raises(SceneError, match=f"^{key} = .*: must be a number"):
+        call()
+
+
+def test_what_the_closed_form_knows_nothing_of_is_refused_without_a_table_of_models() -> None:
+    """A wall on a tie had the multiplier of the wall without, where `homog` was called by itself."""
+    tie = {"from": [0.0, 0.7], "to": [-1.0, 0.7], "area": 1e-4, "young": 2e11, "yield": 1e3}
+    with pytest.raises(SceneError, match="it needs a wall without tie"):
+        homog(panel(tie=[tie]))
 
 
 def test_model_reads_the_panel_from_its_geometry() -> None:
