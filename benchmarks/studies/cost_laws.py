@@ -20,7 +20,8 @@ from dem.dynamic import dem_dynamic
 from runningbond.compare import published_scene
 from runningbond.compare.advice import TOLERANCE
 from runningbond.compare.advice.costs import COARSE
-from runningbond.models import MODELS
+from runningbond.models import MODELS, run_model
+from runningbond.scene import Scene
 
 LARGE = "docs/cost-over-size.csv"
 
@@ -46,6 +47,37 @@ def seconds_beyond(blocks: int) -> list[tuple[str, int, float]]:
             if row["status"] == "collapse"
         ]
     return [row for row in rows if row[1] > blocks]
+
+
+DEARER: dict[str, tuple[str, dict[str, float]]] = {
+    "softened": ("joint.fracture_energy_1", {"cohesion": 2e4, "fracture_energy_1": 5.0, "fracture_energy_2": 20.0}),
+    "crushed": ("joint.compressive_strength", {"compressive_strength": 5e5}),
+    "soft": ("block.young", {"young": 5e9}),
+}
+"""What of a wall makes it dearer: the key that a model reads of it, and changes of the default material."""
+
+
+def print_factors() -> None:
+    """How many times as long models take for walls W1 to W3 so changed, in the median, once they are loaded."""
+    walls = [published_scene(f"wall-w{k}") for k in (1, 2, 3)]
+    for model in MODELS.values():
+        for factor, (key, changes) in DEARER.items():
+            if key not in model.reads:
+                continue
+            change = Scene.with_block if key.startswith("block") else Scene.with_joint
+            ratios = [
+                _processor_seconds(model.name, change(scene, **changes)) / _processor_seconds(model.name, scene)
+                for scene in walls
+            ]
+            print(f"{model.name}: {factor}={np.median(ratios):.2g}", flush=True)
+
+
+def _processor_seconds(model: str, scene: Scene) -> float:
+    """Processor seconds of a second run, at the tolerance of `advise`."""
+    run_model(model, scene, TOLERANCE)
+    start = time.process_time()
+    run_model(model, scene, TOLERANCE)
+    return time.process_time() - start
 
 
 def main() -> None:
@@ -74,6 +106,7 @@ def main() -> None:
         dem_dynamic(published_scene("wall-w1"))
         seconds.append(time.process_time() - start)
     print(f"KERNELS = {seconds[0] - seconds[1]:.1f}")
+    print_factors()
 
 
 if __name__ == "__main__":

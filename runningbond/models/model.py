@@ -26,8 +26,11 @@ class Cost:
     spread: float  # factor within which two thirds of the walls lie about the law
     weightless: float = 1.0  # how many times as much walls without weight cost
     finer: float = 0.0  # power of the tolerance; 0 for a model that does not bisect
-    start: float = 0.0  # seconds until its compiled kernels are loaded, once a process
-    cracked: float = 1.0  # how many times as much walls whose blocks may crack cost
+    start: float = 0.0  # seconds that a wall of any size takes, until compiled kernels are loaded for one
+    cracked: float = 1.0  # how many times as much walls whose blocks may crack cost,
+    softened: float = 1.0  # those whose joints soften,
+    crushed: float = 1.0  # those whose joints crush or close under pressure,
+    soft: float = 1.0  # and those of soft blocks, beside which others are asked
 
 
 class Recorder(Protocol):

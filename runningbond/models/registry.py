@@ -41,7 +41,7 @@ ELASTIC = MOTION | {"block.young", "block.poisson"}
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
 EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.extras` what a static model may know,
 FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a way
-KERNELS = 0.3  # seconds until the kernels of blocks in motion are loaded
+KERNELS = 0.3  # seconds until the kernels of models that follow a wall are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
 FAR = 0.02  # motion of a wall, in its smaller side: a block that topples has lost as much of its resistance
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
@@ -102,7 +102,7 @@ _EVERY_MODEL = (
         *("limit", "limit analysis of the blocks", limit, CRUSHING, "bound"),
         interruptible=True,
         takes=EXTRAS,
-        cost=Cost(0.035, 1.34, 1.70, weightless=0.69),
+        cost=Cost(0.035, 1.34, 1.70, weightless=0.69, start=0.012, crushed=37.0),
         colour="#606fc6",
         marker="o",
     ),
@@ -123,7 +123,7 @@ _EVERY_MODEL = (
         observer=partial(_RECORDER, "StaticRecorder"),
         progress=partial(_PROGRESS, "StaticProgress"),
         interruptible=True,
-        cost=Cost(0.49, 1.76, 1.48, weightless=0.72, finer=0.24),
+        cost=Cost(0.49, 1.76, 1.48, weightless=0.72, finer=0.24, start=KERNELS),
         takes=FOLLOWED,
         colour="#420697",
         marker="v",
@@ -131,7 +131,7 @@ _EVERY_MODEL = (
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, MOTION, "history"),
         parameters=(*IN_STEPS, "displacements", "distance"),
-        cost=Cost(1.0, 1.19, 1.40, weightless=1.2, finer=0.17, start=KERNELS),
+        cost=Cost(1.0, 1.19, 1.40, weightless=1.2, finer=0.17, start=KERNELS, softened=4.0, crushed=11.0),
         respond=partial(_late, "dem.dynamic", "dem_response"),
         **_IN_MOTION,
         colour="#349f8a",
@@ -141,7 +141,16 @@ _EVERY_MODEL = (
     Model(
         *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements", "distance"),
-        cost=Cost(3.2, 1.08, 1.43, weightless=1.4, finer=0.16, start=KERNELS, cracked=10.0),
+        cost=Cost(
+            *(3.2, 1.08, 1.43),
+            weightless=1.4,
+            finer=0.16,
+            start=KERNELS,
+            cracked=10.0,
+            softened=2.2,
+            crushed=4.3,
+            soft=2.1,
+        ),
         respond=partial(_late, "fem_interface.model", "fem_response"),
         **_IN_MOTION,
         colour="#7e2a55",

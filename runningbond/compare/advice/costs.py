@@ -3,9 +3,9 @@
     seconds = pace · (at_100 · (n / 100)^growth · (COARSE / tolerance)^finer + start)
 
 with n blocks and the `Cost` of the model, which `benchmarks/studies/cost_laws.py` prints from the table of a
-comparison, the power of the tolerance as `runningbond study` measures it. Pace is how much slower the machine at hand
-was in the models already run, so that the laws hold from one machine to the next: the mean of these models' ratios,
-each with the weight of what its law is worth.
+comparison, the power of the tolerance as `runningbond study` measures it; times factors for what of a wall makes it
+dearer. Pace is how much slower the machine at hand was in the models already run, so that the laws hold from one
+machine to the next: the mean of these models' ratios, each with the weight of what its law is worth.
 """
 
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from math import exp, hypot, log
 
 from runningbond.models import MODELS, Cost, Model
+from runningbond.models.second_opinion import asks_others
 from runningbond.results import Outcome
 from runningbond.results.outcome import two_digits
 from runningbond.scene import Scene
@@ -25,7 +26,7 @@ EXACT = 1e-3
 POINT_PROGRAMS = 150_000
 """Linear programs of a short search for certificates, times the ends of joints: as long as a few histories take."""
 
-SHORT_SEARCH = Cost(1.8, 1.03, 1.34, weightless=0.56)
+SHORT_SEARCH = Cost(1.8, 1.03, 1.34, weightless=0.56, start=0.03)
 """Law of what that costs."""
 
 
@@ -57,8 +58,10 @@ def short_search(scene: Scene) -> int:
     return 20 + POINT_PROGRAMS // (2 * max(1, len(scene.joints)))
 
 
-def estimate(model: Model, scene: Scene, tolerance: float, pace: Pace = USUAL, *, advised: bool = False) -> Estimate:
-    """What a model that has a `Cost` will take on a scene, of itself or as `advise` runs it."""
+def estimate(
+    model: Model, scene: Scene, tolerance: float, pace: Pace = USUAL, *, advised: bool = False, draws: int = 1
+) -> Estimate:
+    """What a model that has a `Cost` will take on some draws of a scene, of itself or as `advise` runs it."""
     law = SHORT_SEARCH if advised and model.kind == "certificate" else model.cost
     if law is None:
         raise ValueError(f"no law says what {model.name} costs")
@@ -68,7 +71,13 @@ def estimate(model: Model, scene: Scene, tolerance: float, pace: Pace = USUAL, *
         seconds *= law.weightless
     if scene.inner_joint is not None:
         seconds *= law.cracked
-    return Estimate(pace.factor * (seconds + law.start), exp(hypot(log(law.spread), log(pace.spread))))
+    joints = scene.materials_of_joints
+    softens = any(each.softens for each in joints)
+    crushes = any(each.compressive_strength is not None or each.closure is not None for each in joints)
+    dearer = max(law.softened if softens else 1.0, law.crushed if crushes else 1.0)
+    dearer *= law.soft if asks_others(scene, {}) else 1.0
+    seconds = dearer * (draws * seconds + law.start)
+    return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
 
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> Pace:
