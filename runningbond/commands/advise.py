@@ -1,6 +1,7 @@
 """``runningbond advise``: a line a rung, then the answer; or one JSON object."""
 
 import json as to_json
+import sys
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from runningbond.models import check_tolerance
 from runningbond.results import Outcome
 from runningbond.scene import read_scene
 
-from .terminal import DONE, NO_ANSWER, STOPPED, UNDECIDED, Flag, Json, SceneName, Tolerance, interruptions
+from .terminal import DONE, NO_ANSWER, STOPPED, UNDECIDED, Flag, Json, SceneName, Tolerance, interruptions, remarks
 
 
 def advise(
@@ -32,6 +33,8 @@ def advise(
     """
     check_tolerance(tolerance, "--tolerance")
     advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))
+    for line in remarks(advice.known.scene):
+        print(line, file=sys.stderr)
     if not json:
         print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)
     stopped: list[int] = []

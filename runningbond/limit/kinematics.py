@@ -104,11 +104,11 @@ def control_row(scene: Scene) -> Array:
 def sliding_dilates(scene: Scene, motion: Array) -> bool:
     """Whether a mechanism ``(nb, 3)`` of associated joints opens some only because they slide.
 
-    Where none does, joints that slide are off each other anyway and carry no friction: forces and mechanism prove
-    their load for friction without dilatancy just as well.
+    None without friction does. Where no other does, joints that slide are off each other anyway and carry no friction:
+    forces and mechanism prove their load for friction without dilatancy just as well.
     """
     points = wall_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
     opening, slip = jump.opening @ motion.ravel(), np.abs(jump.slip @ motion.ravel())
     friction = wall_strength(scene, points).friction
-    return bool(((slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())
+    return bool(((friction > 0) & (slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())

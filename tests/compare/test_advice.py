@@ -29,7 +29,7 @@ from runningbond.models import MODELS
 from runningbond.results import Outcome
 from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness
 from tests.at_length import at_length
-from tests.walls import courses, panel
+from tests.walls import content, courses, panel, write_toml
 
 KNOWN = {
     "panel-01": (0.6, 0.6),
@@ -488,6 +488,57 @@ def test_blocks_that_may_crack_call_for_fem_with_cracks_in_them() -> None:
     assert "crack" in advice.rungs[1].next.reason
 
 
+def test_blocks_that_may_crack_are_followed_in_halves_where_ties_hold_the_wall() -> None:
+    """Triangles are held by no tie: `fem` refused the wall, and advice ended "undecided", no other model answering."""
+    inner = {"friction": 0.6, "cohesion": 1e5, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    tie = {"from": [0.0, 0.3], "to": [-1.0, 0.3], "area": 1e-4, "young": 2e11, "yield": 10.0}
+    advice = advise(courses([[1, 1], [0.5, 1, 0.5]], inner_joint=inner, tie=[tie], **STIFF))
+    found = advice.outcome()
+    assert found.status == "collapse"
+    assert "fem" not in climbed(advice)
+    assert found.message.endswith("; blocks crack on their axes alone")
+
+
+def test_joints_without_friction_do_not_dilate_and_leave_nothing_to_ask() -> None:
+    """A proof, and what a history comes to: without tan φ associated joints are those of Coulomb."""
+    strength = {"joint__friction": 0.0, "joint__cohesion": 500.0, "joint__tensile_strength": 200.0}
+    scene = courses([[1, 1], [0.5, 1, 0.5]], **strength, **STIFF)
+    advice = advise(scene)
+    assert climbed(advice) == ["homog", "limit"]
+    found, history = advice.outcome(), dem_static(scene, 0.01, past=0)
+    assert found.multiplier is not None
+    assert history.lower is not None
+    assert history.upper is not None
+    assert history.lower * 0.999 <= found.multiplier <= history.upper * 1.001
+
+
+def test_a_wall_that_bears_none_of_the_load_needs_no_history() -> None:
+    """No weight presses its dry joints: nothing stands above 0. A history took a hundred times as long to say so."""
+    body = {"gravity": 0.0, "live": {"kind": "body", "acceleration": [1.0, 0.0]}}
+    advice = advise(courses([[1, 1], [0.5, 1, 0.5]], load=body, **STIFF))
+    assert climbed(advice) == ["homog", "limit"]
+    found = advice.outcome()
+    assert (found.status, found.multiplier, found.lower, found.upper) == ("collapse", 0.0, 0.0, 0.0)
+    assert "it bears none of the live load" in advice.rungs[-1].next.reason
+
+
+def test_a_wall_that_its_beam_leads_is_followed_at_finite_displacements_as_far_as_that_goes() -> None:
+    """It was handed a distance of pushes, which its drive has of itself, and refused under that name."""
+    beam = {"height": 0.1, "condition": "level", "force": [0, -1e3], "drive": {"displacement": [0.01, 0.0]}}
+    scene = courses([[1], [1]], beam=beam, load={"gravity": 9.81}, **STIFF)
+    last = advise(scene, 0.1, finite=True).rungs[-1]
+    assert last.model.endswith("finite")
+    assert last.outcome is not None
+    assert last.outcome.upper is not None
+
+
+def test_what_was_not_followed_past_its_peak_is_not_said_to_be() -> None:
+    found = known(1.0, (0.97, 0.99))
+    stopped = Outcome("", "dem-dynamic, finite", "undecided", message="interrupted")
+    step = next_step(found, Step(MODELS["dem-dynamic"], "", finite=True), stopped)
+    assert (step.model, step.reason) == (None, "undecided: interrupted")
+
+
 def test_a_wall_that_locks_with_dilatancy_is_asked_without() -> None:
     point = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
     scene = panel(support__kind="pinned-corners", joint__cohesion=1e5, load={"gravity": 0.0, "live": point}, **STIFF)
@@ -549,6 +600,41 @@ def test_the_better_a_law_the_more_its_rung_tells_of_the_machine() -> None:
     found = pace(scene, TOLERANCE, taken)
     assert 1 < found.factor < 3
     assert found.spread < min(law.spread for law in laws.values())
+
+
+@pytest.mark.parametrize(
+    ("scene", "seconds"),
+    [(courses([[1]]), 0.0135), (panel(joint__compressive_strength=5e5), 0.47), (published_scene("panel-04"), 0.032)],
+)
+def test_walls_of_another_kind_tell_of_no_other_machine(scene: Scene, seconds: float) -> None:
+    """What `limit` took for a wall of one block, for joints that crush, and for one of README, where laws were fitted.
+
+    By the first one the machine was 190 times as slow, by the second one 19 times, and so was all that followed.
+    """
+    assert 1 / 3 < pace(scene, TOLERANCE, [Outcome("", "limit", "undecided", seconds=seconds)]).factor < 3
+
+
+def test_what_makes_a_wall_dearer_is_in_its_price() -> None:
+    plain = panel(**STIFF, block__young=1e12)
+    softening = {"joint__cohesion": 1e4, "joint__fracture_energy_1": 5.0, "joint__fracture_energy_2": 50.0}
+    dearer: dict[str, dict[str, Any]] = {
+        "dem-dynamic": softening,
+        "limit": {"joint__compressive_strength": 1e6},
+        "fem": {"block__young": 1e9},
+    }
+    for name, changes in dearer.items():
+        model = MODELS[name]
+        changed = panel(**STIFF | {"block__young": 1e12} | changes)
+        assert estimate(model, changed, TOLERANCE).seconds > 2 * estimate(model, plain, TOLERANCE).seconds
+
+
+def test_what_looks_like_a_slip_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As `run` says it, where scripts read only an object on standard output."""
+    wall = write_toml(content(joint__friction=3.0, wall__length=0.24, wall__height=0.06), tmp_path / "wall.toml")
+    assert command(["advise", str(wall), "--json"]) == 0
+    printed = capsys.readouterr()
+    assert "warning: joint.friction = 3" in printed.err
+    assert json.loads(printed.out)["status"] == "collapse"
 
 
 def test_cost_adds_up_rung_by_rung() -> None:

@@ -55,8 +55,9 @@ class Advice:
                 outcome = together(draws)
                 self.known.learn(step.model, outcome, finite=step.finite, draws=draws)
                 following = next_step(self.known, step, outcome)
-            cost = self.known.estimate(following.model) if following.model and not following.finite else None
-            cost = cost and replace(cost, seconds=following.draws * cost.seconds)
+            cost: Estimate | None = None
+            if following.model is not None and not following.finite:
+                cost = self.known.estimate(following.model, following.draws)
             self.rungs.append(AdviceRung(step.name or "", outcome, following, cost, self.known.seconds))
             yield self.rungs[-1]
             step = following
@@ -134,7 +135,8 @@ def finite_peak(known: Knowledge, step: Step) -> Outcome:
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
     distance = FARTHER * max(known.displacement or 0.0, tolerance) * scene.block_size
-    outcome = run_model(model, scene, tolerance, displacements="finite", distance=distance)
+    way: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam is led as far as its drive says
+    outcome = run_model(model, scene, tolerance, displacements="finite", **way)
     if outcome.status == "collapse" and bound is not None and outcome.lower is not None and outcome.lower > bound:
         message = f"above the load that no wall bears at small displacements: {outcome.message}"
         outcome = replace(outcome, status="undecided", multiplier=None, message=message)

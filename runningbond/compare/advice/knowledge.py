@@ -60,7 +60,9 @@ class Knowledge:
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
-        self.cracks = self.scene.inner_joint is not None  # blocks may crack
+        may_crack, tied = self.scene.inner_joint is not None, len(self.scene.ties) > 0
+        self.cracks = may_crack and not tied  # blocks may crack anywhere,
+        self.halves = may_crack and tied  # or on their axes alone, for triangles are held by no tie
         materials = self.scene.materials_of_joints
         self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
@@ -79,7 +81,9 @@ class Knowledge:
         if model.kind == "bound":
             self.bound = outcome.upper
             weakens = self.softens or self.gives_way or self.cracks
-            if not (weakens or sliding_dilates(self.scene, outcome.motion)):
+            # Without a live load forces balance the wall, and nothing stands above.
+            nothing = outcome.upper <= 0
+            if not weakens and (nothing or not sliding_dilates(self.scene, outcome.motion)):
                 self._answer("proof", outcome, outcome.lower)
         elif model.kind == "certificate":
             certified = outcome
@@ -156,32 +160,36 @@ class Knowledge:
         last = int(np.argmin(np.abs(multiplier - self.answer.lower)))
         return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)
 
-    def estimate(self, model: Model) -> Estimate:
-        """What a model is going to cost, at the pace of those run so far."""
+    def estimate(self, model: Model, draws: int = 1) -> Estimate:
+        """What a model is going to cost on some draws, at the pace of those run so far."""
         at = pace(self.scene, self.tolerance, self.outcomes)
-        return estimate(model, self.scene, self.tolerance, at, advised=True)
+        return estimate(model, self.scene, self.tolerance, at, advised=True, draws=draws)
 
     def meaning(self) -> str:
         """What the bracket of the answer means; empty without one."""
         if self.answer is None:
             return ""
+        return self._meaning(self.answer) + ("; blocks crack on their axes alone" if self.halves else "")
+
+    def _meaning(self, answer: Outcome) -> str:
+        """What the bracket of an answer means."""
         above = "" if self.bound is None else f"; above {number(self.bound)} nothing stands"
         if self.evidence == "proof":
             return "forces and a mechanism prove it, whether or not sliding joints dilate"
         if self.evidence == "finite":
-            return self.answer.message + (above and f"{above} at small displacements")
+            return answer.message + (above and f"{above} at small displacements")
         if self.evidence == "certificate":
             seen = ", and a history agrees" if self.draws else ""
-            if self.answer.upper is None:
+            if answer.upper is None:
                 seen = ", but a history locks: it takes other forces in joints than the load alone brings about"
-            return f"{self._certified(self.answer)}{seen}; smaller ones are not excluded{above}"
+            return f"{self._certified(answer)}{seen}; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else "; others may end lower"
-        if self.lowest is not None and self.lowest < (self.answer.lower or 0.0):
+        if self.lowest is not None and self.lowest < (answer.lower or 0.0):
             below = f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
-        if self.draws == 1 and self.answer.fall is not None:
+        if self.draws == 1 and answer.fall is not None:
             told = "the lowest and the highest of its paths in load steps of several lengths"
-        wide = "" if _within(self.answer, self.tolerance) else ", which lie further apart than the tolerance"
+        wide = "" if _within(answer, self.tolerance) else ", which lie further apart than the tolerance"
         return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
 
     def _certified(self, answer: Outcome) -> str:

@@ -36,6 +36,8 @@ def next_step(known: Knowledge, step: Step, outcome: Outcome) -> Step:
         return _after_bound(known, outcome)
     if step.model.kind == "certificate":
         return _after_certificate(known, outcome)
+    if step.finite and outcome.status != "collapse":
+        return Step(None, f"{outcome.status}: {outcome.message}")
     if step.finite:
         return Step(None, "the wall was followed past its peak at finite displacements")
     return _after_history(known, step, step.model, outcome)
@@ -65,7 +67,8 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
         reason = f"joints soften, which {' and '.join(others)} do not take into account"
         return Step(softening[0], f"{bound}; {reason}")
     if known.evidence == "proof":
-        return _enough(known, "nothing slides on a closed joint, so dilatancy has no influence")
+        nothing = "nothing slides with friction on a closed joint, so dilatancy has no influence"
+        return _enough(known, "it bears none of the live load" if known.bound == 0.0 else nothing)
     model, why = _history(known)
     if known.crushes:
         return Step(model, f"{bound}; joints crush, of which certificates know nothing: {why}")
