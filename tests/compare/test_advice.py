@@ -626,6 +626,10 @@ def test_what_makes_a_wall_dearer_is_in_its_price() -> None:
         model = MODELS[name]
         changed = panel(**STIFF | {"block__young": 1e12} | changes)
         assert estimate(model, changed, TOLERANCE).seconds > 2 * estimate(model, plain, TOLERANCE).seconds
+    closes = plain.with_joint(closure=Closure(1e4, 1e12))
+    for name, is_dearer in (("limit", False), ("limit-nonassociated", False), ("dem-dynamic", True), ("fem", True)):
+        one, other = (estimate(MODELS[name], scene, TOLERANCE).seconds for scene in (plain, closes))
+        assert (other > 2 * one) if is_dearer else other == one
 
 
 def test_what_looks_like_a_slip_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

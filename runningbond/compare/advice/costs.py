@@ -71,10 +71,14 @@ def estimate(
         seconds *= law.weightless
     if scene.inner_joint is not None:
         seconds *= law.cracked
+    # What a model does not read costs it nothing.
     joints = scene.materials_of_joints
-    softens = any(each.softens for each in joints)
-    crushes = any(each.compressive_strength is not None or each.closure is not None for each in joints)
-    dearer = max(law.softened if softens else 1.0, law.crushed if crushes else 1.0)
+    softens = any(each.softens for each in joints) and "joint.fracture_energy_1" in model.reads
+    crushes = (
+        any(each.compressive_strength is not None for each in joints) and "joint.compressive_strength" in model.reads
+    )
+    closes = any(each.closure is not None for each in joints) and "joint.closure" in model.reads
+    dearer = max(law.softened if softens else 1.0, law.crushed if crushes or closes else 1.0)
     dearer *= law.soft if asks_others(scene, {}) else 1.0
     seconds = dearer * (draws * seconds + law.start)
     return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
