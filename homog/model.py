@@ -33,6 +33,10 @@ than wide, and of taller ones. Measured on 932 panels of up to 1500 blocks, tan 
 """
 
 
+NEGLIGIBLE = 1e-8
+"""Share of the weight by which loads may differ from it."""
+
+
 def crack_slope(block_width: float, block_height: float, friction: float) -> float:
     """Steepest crack slope s of blocks b × a [m] with friction tan φ; inf without friction.
 
@@ -161,8 +165,8 @@ def _is_lateral(scene: Scene) -> bool:
     return (
         live.on_mass_alone
         and dead.on_mass_alone
-        and np.allclose(dead.acceleration, [0.0, -weight])
-        and np.allclose(live.acceleration, [aside, 0.0])
+        and np.allclose(dead.acceleration, [0.0, -weight], rtol=0, atol=NEGLIGIBLE * weight)
+        and np.allclose(live.acceleration, [aside, 0.0], rtol=0, atol=NEGLIGIBLE * weight)
     )
 
 

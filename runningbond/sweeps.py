@@ -66,8 +66,8 @@ def sweep(
     Raises
     ------
     SceneError
-        For displacements that the model does not know, and where no combination describes a wall, for example because
-        a key is misspelt.
+        For displacements that the model does not know, a key without a value, and where no combination describes a
+        wall, for example because a key is misspelt.
     """
     model = going_far(find_model(model), displacements, distance)
     check_wall(wall)
@@ -80,6 +80,10 @@ def sweep(
         is_single = isinstance(values, (str, bytes, Mapping)) or (isinstance(values, np.ndarray) and not values.ndim)
         if is_single or not isinstance(values, Iterable):
             raise SceneError(key, "must be a list of the values that it is to take", values)
+    changes = {key: list(values) for key, values in changes.items()}
+    for key, values in changes.items():
+        if not values:
+            raise SceneError(key, "must have one value or more to take", values)
     cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
     scenes: dict[str, Scene] = {}
     names: list[str] = []

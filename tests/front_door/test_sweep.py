@@ -30,6 +30,13 @@ def tables(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
         monkeypatch.setitem(sys.modules, "pandas", None)
 
 
+@pytest.mark.parametrize("values", [[], np.arange(0.6, 0.4, 0.1), iter([])])
+def test_a_key_without_a_value_is_refused(values: Any) -> None:
+    """As of a range that is the wrong way round; a table without a row came of it, of a misspelt key as well."""
+    with pytest.raises(SceneError, match=r"^joint.friction = \[\]: must have one value or more"):
+        rb.sweep(WALL, {"joint.friction": values}, "limit", jobs=1)
+
+
 def test_a_low_wall_slides_at_its_friction_whatever_its_thickness() -> None:
     """Exact: λ = tan φ. The last key varies fastest."""
     changes = {"joint.friction": [0.2, 0.3], "wall.thickness": [0.1, 0.2]}

@@ -245,6 +245,13 @@ def test_numbers_that_mean_nothing_are_refused_by_name(call: Callable[[], object
         call()
 
 
+def test_a_weight_that_does_not_pull_down_is_refused_however_small() -> None:
+    """Below 1e-8 m/s² any direction of gravity passed for down."""
+    assert homog(panel(load__gravity=1e-9)).multiplier == homog(panel()).multiplier
+    with pytest.raises(SceneError, match="no dead load but the weight"):
+        homog(panel(load__gravity=[1e-9, 0.0]))
+
+
 def test_what_the_closed_form_knows_nothing_of_is_refused_without_a_table_of_models() -> None:
     """A wall on a tie had the multiplier of the wall without, where `homog` was called by itself."""
     tie = {"from": [0.0, 0.7], "to": [-1.0, 0.7], "area": 1e-4, "young": 2e11, "yield": 1e3}
