@@ -9,7 +9,7 @@ of the weight, is larger than of a wall as thick all over.
 
 import runningbond as rb
 
-storeys = {"second": 0.45, "third": 0.30}
+storeys, lintel = {"second": 0.45, "third": 0.30}, {"height": 0.4, "bearing": 0.4}
 wall = rb.Wall.running_bond(
     length=4.0,
     height=7.2,
@@ -18,9 +18,7 @@ wall = rb.Wall.running_bond(
     thickness=0.6,
     density=2200.0,
     friction=0.7,
-    opening=[
-        {"from": [1.6, y], "to": [2.4, y + 1.2], "lintel": {"height": 0.4, "bearing": 0.4}} for y in (0.8, 3.2, 5.6)
-    ],
+    opening=[{"from": [1.6, y], "to": [2.4, y + 1.2], "lintel": lintel} for y in (0.8, 3.2, 5.6)],
     materials={name: {"density": 2200.0, "thickness": thickness} for name, thickness in storeys.items()},
     assign=[
         {"block": "second", "box": [[0.0, 2.4], [4.0, 4.8]]},
