@@ -6,17 +6,19 @@ from functools import cached_property
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .scene import Scene, SceneError, read_description, scene_from_dict
+from .scene import Scene, SceneError, plausibility, read_description, scene_from_dict
 from .scene.errors import abbreviated
 from .scene.ranges import path_of, suggestion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .compare.advice import Advice
     from .draws import Draws
     from .models import Model
     from .pictures.response import DrawnResponse
@@ -350,6 +352,28 @@ class Wall:
         from .pictures.response import DrawnResponse
 
         return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)), wall=self.scene)
+
+    def advise(self, tolerance: float = 0.05, *, finite: bool = False) -> "Advice":
+        """Run no more models than the wall needs for a bracket as narrow as asked, the cheapest first.
+
+        Parameters
+        ----------
+        tolerance
+            Relative width of the bracket that is asked for.
+        finite
+            Whether the wall is followed at finite displacements in the end, however small they may be.
+
+        Returns
+        -------
+        Advice
+            ``rungs``, one a model with its outcome and what follows from it, and ``outcome()``, the answer; printed it
+            is what ``runningbond advise`` says.
+        """
+        from .compare.advice import advise
+
+        for line in plausibility.warnings(self.scene):
+            warn(line, stacklevel=2)
+        return advise(self.scene, tolerance, finite=finite)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw the wall with its support and loads into axes, or a figure of its own where none are given.

@@ -8,7 +8,6 @@ from typing import Any
 from runningbond.compare.advice import TOLERANCE, Advice, AdviceRung
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.published import find_scene
-from runningbond.compare.table import bracket
 from runningbond.models import check_tolerance
 from runningbond.results import Outcome
 from runningbond.scene import read_scene
@@ -36,11 +35,11 @@ def advise(
     for line in remarks(advice.known.scene):
         print(line, file=sys.stderr)
     if not json:
-        print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)
+        print(advice.title, flush=True)
     stopped: list[int] = []
     for rung in advice.climb():
         if not json:
-            print(_rung_line(rung), flush=True)
+            print(rung, flush=True)
         if stopped:
             break
         if rung.next.model is not None:
@@ -49,28 +48,10 @@ def advise(
     if stopped:
         before = f" before {rung.next.name}" if rung.next.name else ""
         outcome = replace(outcome, message=f"interrupted{before}: {outcome.message}")
-    print(_as_json(advice, outcome) if json else _as_text(advice, outcome), flush=True)
+    print(_as_json(advice, outcome) if json else advice.in_words(outcome), flush=True)
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
-
-
-def _rung_line(rung: AdviceRung) -> str:
-    """The result of a rung, the cost so far, what follows from it, and the next rung with its cost."""
-    result = "–"
-    if rung.outcome is not None:
-        result = bracket(rung.outcome) if rung.outcome.status == "collapse" else rung.outcome.status
-    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.next.reason}"
-    if rung.next.name is None:
-        return line
-    return f"{line} → {rung.next.name}, {rung.next_cost or 'at a cost that no law gives'}"
-
-
-def _as_text(advice: Advice, outcome: Outcome) -> str:
-    """The answer, by which model, what its bracket means, and how far such answers were from tests."""
-    result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
-    said = outcome.message, advice.against_experiment()[1]
-    return "\n  ".join([f"{result} by {outcome.model}, {outcome.seconds:.2f} s", *filter(None, said)])
 
 
 def _as_json(advice: Advice, outcome: Outcome) -> str:

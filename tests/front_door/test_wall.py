@@ -9,6 +9,7 @@ import pytest
 
 import runningbond as rb
 from runningbond.campaigns.fingerprint import fingerprint
+from runningbond.commands.command_line import command
 from runningbond.compare.published import PUBLISHED, published_scene
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.schema import scene_schema
@@ -214,6 +215,27 @@ def test_what_a_file_may_not_say_python_may_not_say(keys: dict[str, Any], said: 
     with pytest.raises(rb.SceneError, match=re.escape(said)) as refusal:
         rb.Wall.running_bond(**{**PANEL, **keys})
     assert "\n" not in str(refusal.value)
+
+
+def test_advice_is_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
+    """But for the seconds, which are those of another climb."""
+    advice = rb.read("wall-w3").advise(0.3)
+    assert command(["advise", "wall-w3", "--tolerance", "0.3"]) == 0
+    printed, said = (
+        re.sub(r"\d+\.?\d* s|about [^(]*\(×÷ [^)]*\)", "", each) for each in (capsys.readouterr().out, repr(advice))
+    )
+    assert printed.split() == said.split()
+    outcome = advice.outcome()
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.upper - outcome.lower <= 0.3 * outcome.upper
+    assert [rung.model for rung in advice.rungs][:2] == ["homog", "limit"]
+
+
+def test_advice_warns_of_what_looks_like_a_slip() -> None:
+    wall = rb.Wall.running_bond(**PANEL).with_({"joint.friction": 30.0, "joint.cohesion": 0.0})
+    with pytest.warns(UserWarning, match="friction_angle = 30 meant"):
+        wall.advise(0.9)
 
 
 def test_openings_are_given_as_a_file_has_them() -> None:

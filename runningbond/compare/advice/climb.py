@@ -15,6 +15,7 @@ from runningbond.models import check_tolerance, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
+from ..table import bracket
 from .costs import Estimate, short_search
 from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
@@ -34,13 +35,38 @@ class AdviceRung:
     next_cost: Estimate | None  # None on the last rung, and where no law says
     seconds: float  # since the foot of the ladder
 
+    def __str__(self) -> str:
+        """The result, the cost so far, what follows from it, and the next rung with its cost, in a line."""
+        result = "–"
+        if self.outcome is not None:
+            result = bracket(self.outcome) if self.outcome.status == "collapse" else self.outcome.status
+        line = f"{self.model:20} {result:19} {self.seconds:7.2f} s  {self.next.reason}"
+        if self.next.name is None:
+            return line
+        return f"{line} → {self.next.name}, {self.next_cost or 'at a cost that no law gives'}"
 
-@dataclass
+
+@dataclass(repr=False)
 class Advice:
     """A climb: what is asked of a scene, what is known of it, and the rungs so far."""
 
     known: Knowledge
     rungs: list[AdviceRung] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        """What ``runningbond advise`` prints: a line a rung, then the answer."""
+        return "\n".join([self.title, *map(str, self.rungs), *([self.in_words(self.outcome())] if self.rungs else [])])
+
+    @property
+    def title(self) -> str:
+        """Of which wall, and how narrow a bracket is asked for."""
+        return f"{self.known.scene.title}: λ to {100 * self.known.tolerance:g} %"
+
+    def in_words(self, outcome: Outcome) -> str:
+        """The answer, by which model, what its bracket means, and how far such answers were from tests."""
+        result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
+        said = outcome.message, self.against_experiment()[1]
+        return "\n  ".join([f"{result} by {outcome.model}, {outcome.seconds:.2f} s", *filter(None, said)])
 
     def climb(self) -> Iterator[AdviceRung]:
         """Climb rung by rung; each is given when it is done, before the next is begun."""
