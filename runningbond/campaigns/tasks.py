@@ -64,7 +64,7 @@ class Task:
             ):  # also in a worker with threads: gmsh and those of linear algebra are there once
                 return Answer(self.cell, self._outcome(), key=key)
         except SceneError as reason:
-            return Answer(self.cell, None, str(reason), key)
+            return Answer(self.cell, None, str(reason).removeprefix(f"model {self.model.name}: "), key)
 
     def _outcome(self) -> Outcome:
         """The outcome, with moments of the collapse where the model follows it."""

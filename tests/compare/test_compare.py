@@ -587,3 +587,12 @@ def test_why_a_model_does_not_apply_to_a_wall_of_ones_own_is_told(
     notes = [line for line in capsys.readouterr().err.splitlines() if line.startswith("note: ")]
     assert len(notes) == 1
     assert notes[0].startswith("note: own, dem-static: joint.mortar: is missing; this model needs it")
+
+
+def test_a_note_names_its_model_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As `run` it says "model homog: has no closed form"."""
+    opened = [[1, 1, 1], [1, -1, 1], [1, 1, 1]]
+    own = str(write_toml(content(wall__length=None, wall__height=None, wall__courses=opened), tmp_path / "own.toml"))
+    assert command(["compare", own, "--models", "homog", "--jobs", "1", "--out", str(tmp_path / "out")]) == 0
+    (note,) = (line for line in capsys.readouterr().err.splitlines() if line.startswith("note: "))
+    assert note.startswith("note: own, homog: has no closed form for this scene")
