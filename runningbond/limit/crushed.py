@@ -30,7 +30,7 @@ from .force_program import (
     solution_of,
     solve_program,
 )
-from .interior_point import InteriorPoint, interior_point
+from .interior_point import InteriorPoint, finishing, interior_point
 from .proved import CLOSE, ROUGH, WIDE, is_large, loaded
 from .repair import admissible, balanced
 
@@ -165,20 +165,25 @@ def closest(system: Equilibrium) -> float:
 def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool | None]:
     """Forces and mechanism of a system with joints that crush, and whether it rests under its dead load.
 
-    Their bracket is as wide as `closest` says, or as `ROUNDS` leave it.
+    Their bracket is as wide as `closest` says, or as `ROUNDS` leave it. Ctrl-C leaves that of the last program, if one
+    was solved, and the status is ``budget``.
     """
     dead = system.under_dead_load()
     rests, known = _resting(dead, joints)
     if not rests:
         return ForceSolution.none("numerical" if rests is None else "infeasible"), rests
     program, point, iterations = _narrowed(system, joints, known)
-    if point.status != "optimal":
-        return ForceSolution.none(point.status, iterations), True
-    forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
-    found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
-    if found is None or not _width(system, found) <= closest(system):
-        found = _beside_vertex(program, forces, motion) or found
-    return (ForceSolution.none("numerical") if found is None else replace(found, iterations=iterations)), True
+    if point is None or point.status != "optimal":
+        return ForceSolution.none("budget" if point is None else point.status, iterations), True
+    with finishing() as interruptions:
+        forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
+        found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
+        if found is None or not (point.interrupted or _width(system, found) <= closest(system)):
+            found = _beside_vertex(program, forces, motion) or found
+    status: ProgramStatus = "budget" if point.interrupted or interruptions else "optimal"
+    if found is None:
+        return ForceSolution.none("numerical" if status == "optimal" else status, iterations), True
+    return replace(found, status=status, iterations=iterations), True
 
 
 def _width(system: Equilibrium, found: ForceSolution) -> float:
@@ -221,13 +226,23 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
     return forces, motion
 
 
-def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple[InnerProgram, InteriorPoint, int]:
-    """The last of a row of programs that know more and more resultants, its interior point, and all iterations."""
+def _narrowed(
+    system: Equilibrium, joints: Crushing, known: Resultants
+) -> tuple[InnerProgram, InteriorPoint | None, int]:
+    """The last of a row of programs that know more and more resultants, its interior point, and all iterations.
+
+    The point of the last one solved is `interrupted` where Ctrl-C ended the next; None where there was none before.
+    """
     aim, iterations, width = closest(system), 0, 1.0
+    program, point = InnerProgram(system, joints, known), None
     for _ in range(ROUNDS):
-        program = InnerProgram(system, joints, known)
+        following = InnerProgram(system, joints, known)
         accuracy = min(max(width, aim) / 1e3, ROUGH)
-        point = interior_point(program.arguments(), accuracy)
+        try:
+            found_point = interior_point(following.arguments(), accuracy)
+        except KeyboardInterrupt:
+            return program, point and replace(point, interrupted=True), iterations
+        program, point = following, found_point
         iterations += point.iterations
         if point.status != "optimal":
             break

@@ -15,9 +15,11 @@ from scipy.optimize import brentq
 from scipy.sparse import csc_matrix, eye_array, hstack, vstack
 
 from runningbond.compare.published import published_scene
-from runningbond.limit import equilibrium, limit, limit_state
+from runningbond.limit import crushed, equilibrium, limit, limit_state
+from runningbond.limit.associated import INTERRUPTED
 from runningbond.limit.crushed import InnerProgram, first_resultants
 from runningbond.limit.crushing import Crushing, _boundary
+from runningbond.limit.interior_point import InteriorPoint, interior_point
 from runningbond.limit.kinematics import dead_load, live_load, movable_freedoms
 from runningbond.limit.proved import is_large
 from runningbond.models import run_model
@@ -552,3 +554,33 @@ def test_a_large_wall_is_bracketed_by_the_repaired_interior_point() -> None:
     assert outcome.lower <= 0.6 * (1 + 1e-9)
     assert outcome.upper >= 0.6 * (1 - 1e-9)
     assert outcome.upper - outcome.lower <= 1e-4 * 0.6
+
+
+@pytest.mark.parametrize("when", [1, 2, 8])
+def test_ctrl_c_leaves_the_bracket_of_the_last_program(monkeypatch: pytest.MonkeyPatch, when: int) -> None:
+    """Of all but the first forces and a mechanism are known, and prove bounds about the answer."""
+    material = JointMaterial(0.65, compressive_strength=2e5)
+    blocks = [rectangle(x, 0.5 * k, 1.0, 0.5) for k in range(4) for x in (0.0, 1.0)]
+    scene = built(blocks, material)
+    exact, programs = collapse(scene), [0]
+
+    def solve(program: dict[str, Any], tolerance: float) -> InteriorPoint:
+        programs[0] += bool(np.any(program["c"]))  # rests have no aim
+        if programs[0] == when:
+            programs[0] += 1000  # what follows is finished
+            raise KeyboardInterrupt
+        return interior_point(program, tolerance)
+
+    monkeypatch.setattr(crushed, "interior_point", solve)
+    outcome = limit(scene)
+    assert outcome.status == "undecided"
+    assert outcome.message.startswith(INTERRUPTED)
+    if when == 1:
+        assert outcome.lower == 0.0
+        return
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 0.0 < outcome.lower <= exact * (1 + NARROW)
+    assert outcome.upper >= exact * (1 - NARROW)
+    assert outcome.upper - outcome.lower < {2: 2.0, 8: 0.01}[when] * exact
+    assert len(outcome.motion)
