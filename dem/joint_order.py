@@ -1,8 +1,8 @@
 """Runs of alike joints: numbers for blocks and joints with which kernels walk through memory straight ahead.
 
 A wall of equal blocks has few kinds of joints: what the joint of one pair of blocks is to them, the joint of the
-next pair is to those. Blocks are numbered column by column, from the bottom up, and joints of one kind by their
-blocks, so that where joint j separates blocks p and q, joint j + 1 as a rule separates p + 1 and q + 1.
+next pair is to those, if it is as thick. Blocks are numbered column by column, from the bottom up, and joints of one
+kind by their blocks, so that where joint j separates blocks p and q, joint j + 1 as a rule separates p + 1 and q + 1.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,10 @@ from runningbond.scene import Array, Indices, Scene
 from .rigid_kernels import RigidJoints
 
 RESOLUTION = 1e-9
-"""Difference, in sizes of the wall, below which two joints are of one kind: far below the contact tolerance."""
+"""Difference, in sizes of the wall, below which two joints are of one kind: far below the contact tolerance.
+
+And in areas of the largest joint, for they may differ in thickness.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +42,10 @@ def joint_order(scene: Scene) -> JointOrder:
     normal = points.normal[::2]
     shape = np.column_stack([normal, half, _arms(scene, normal)])
     size = float(np.ptp(scene.blocks.extent(scene.wall), axis=0).max())
-    rounded = np.rint(shape / [RESOLUTION, RESOLUTION, *[RESOLUTION * size] * 5]).astype(np.int64)
+    area = points.area[::2]
+    units = RESOLUTION * np.array([1.0, 1.0, *[size] * 5, area.max(initial=0.0) or 1.0])
+    shape = np.column_stack([shape, area])
+    rounded = np.rint(shape / units).astype(np.int64)
     kind = np.unique(np.column_stack([row_of_joint(scene), rounded]), axis=0, return_inverse=True)[1].ravel()
     a, b = place[scene.joints.block].T
     order = np.lexsort((a, kind))
@@ -47,8 +53,7 @@ def joint_order(scene: Scene) -> JointOrder:
     goes_on = (np.diff(a) == 1) & (np.diff(b) == 1) & (np.diff(kind) == 0)
     begin = np.flatnonzero(np.append(len(order) > 0, ~goes_on))
     first, second = ((of[begin] - begin).astype(np.uint64) for of in (a, b))
-    shape = np.column_stack([shape, points.area[::2]])[order][begin]
-    runs = RigidJoints(np.append(begin, len(order)).astype(np.uint64), first, second, shape)
+    runs = RigidJoints(np.append(begin, len(order)).astype(np.uint64), first, second, shape[order][begin])
     ends, n = points.part(np.concatenate([2 * order, 2 * order + 1])), len(order)
     if len(rule.nodes) == 2:
         return JointOrder(place, ends, runs, None)

@@ -10,6 +10,7 @@ from dem.rigid_system import rigid_system
 from runningbond.compare import published_scene
 from runningbond.draws import Scatter
 from runningbond.joints.wall_law import PER_MATERIAL
+from tests.walls import courses
 
 
 @pytest.mark.parametrize("name", ["panel-01", "panel-06", "point-load-2"])
@@ -28,3 +29,18 @@ def test_joints_of_two_materials_stand_together() -> None:
     of_joint = np.arange(len(scene.joints)) % 2
     two = replace(scene, joint_materials=(scene.joint, weaker), material_of_joint=of_joint)
     assert len(rigid_system(two).interface.law.constants) == 2 * 2  # of first points, and of second ones
+
+
+def test_joints_of_another_thickness_are_in_runs_of_their_own() -> None:
+    """Kernels take a run's joints to be as large as its first one."""
+    pattern = [[1.0, 1.0, 1.0], [0.5, 1.0, 1.0, 0.5]] * 3
+    materials = {"above": {"density": 1800.0, "thickness": 0.1}, "top": {"density": 1800.0, "thickness": 0.05}}
+    storeys = {"above": [[0.0, 0.35], [1.2, 0.7]], "top": [[0.0, 0.7], [1.2, 1.05]]}
+    assign = [{"block": name, "box": box} for name, box in storeys.items()]
+    size = {"joint__normal_stiffness": 1e9, "joint__shear_stiffness": 4e8}
+    scene = courses(pattern, wall__thickness=0.3, materials=materials, assign=assign, **size)
+    order = joint_order(scene)
+    lengths = np.diff(order.runs.start.astype(np.int64))
+    area = np.repeat(order.runs.shape[:, -1], lengths)
+    assert area == pytest.approx(order.points.area[: len(area)])
+    assert area == pytest.approx((scene.joints.length * scene.thickness_of_joints / 2)[order.points.joint[: len(area)]])

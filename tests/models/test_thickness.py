@@ -1,5 +1,6 @@
 """Blocks with a thickness of their own, as walls have that are thicker below than above."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +54,37 @@ def test_a_joint_is_as_thick_as_the_thinner_of_its_blocks(model: str, lower: flo
     wall = stepped(lower=lower, upper=upper, live=lift, friction=0.6, cohesion=STRENGTH, tensile_strength=STRENGTH)
     outcome = wall.run(model, tolerance=0.005)
     exact = STRENGTH * WIDTH * min(lower, upper) + DENSITY * GRAVITY * WIDTH * HEIGHT * upper
+    assert outcome.status == "collapse"
+    assert outcome.lower == pytest.approx(exact, rel=0.006)
+    assert outcome.upper == pytest.approx(exact, rel=0.006)
+
+
+def pile(thickness: Sequence[float], **keys: Any) -> rb.Wall:
+    """Stones on one another, each of a thickness of its own; that of the wall is none of them."""
+    stone = {"density": DENSITY, "young": 1e10, "poisson": 0.2}
+    return rb.Wall.courses(
+        [[1]] * len(thickness),
+        block_width=WIDTH,
+        block_height=HEIGHT,
+        thickness=7.0,
+        block=stone,
+        materials={f"m{k}": {**stone, "thickness": t} for k, t in enumerate(thickness)},
+        assign=[{"block": f"m{k}", "blocks": [k]} for k in range(len(thickness))],
+        **keys,
+    )
+
+
+@pytest.mark.parametrize("model", [*MODELS, "limit-nonassociated"])
+def test_each_bed_of_a_pile_is_as_thick_as_its_own_stones(model: str) -> None:
+    """Its beds are alike but for that: lifted by its top a pile parts where f_t L t and the weight above are least."""
+    thickness = [0.4, 0.1, 0.3, 0.15]
+    lift = {"kind": "point", "at": [WIDTH / 2, 4 * HEIGHT], "force": [0.0, 1.0]}
+    joint = {"friction": 0.6, "cohesion": STRENGTH, "tensile_strength": STRENGTH}
+    wall = pile(thickness, joint={**joint, "normal_stiffness": 1e9, "shear_stiffness": 4e8}, live=lift)
+    weight = DENSITY * GRAVITY * WIDTH * HEIGHT * np.array(thickness)
+    bed = [thickness[0], *np.minimum(thickness[1:], thickness[:-1])]
+    exact = min(STRENGTH * WIDTH * t + weight[k:].sum() for k, t in enumerate(bed))
+    outcome = wall.run(model, tolerance=0.005)
     assert outcome.status == "collapse"
     assert outcome.lower == pytest.approx(exact, rel=0.006)
     assert outcome.upper == pytest.approx(exact, rel=0.006)
