@@ -73,7 +73,8 @@ class Wall:
         self.area, self.centre = (np.array(part) for part in zip(*map(area_and_centre, self.outlines), strict=True))
         self.gap = CONTACT * math.sqrt(self.area.min())
         density = np.array([scene.block_materials[k].density for k in scene.material_of_block])
-        self.mass = density * self.area * scene.thickness
+        self.thickness = thicknesses(scene)
+        self.mass = density * self.area * self.thickness
         if scene.beam is not None:
             self.mass[scene.beam.block] = scene.beam.mass
         self.base = min(
@@ -97,7 +98,7 @@ class Wall:
         self.tangent = np.repeat(tangent, 2, axis=0)
         self.normal = np.column_stack([self.tangent[:, 1], -self.tangent[:, 0]])
         self.pair = np.repeat(joints.block, 2, axis=0)
-        area = np.repeat(length * self.scene.thickness / 2, 2)
+        area = np.repeat(length * self.thickness[joints.block].min(axis=1) / 2, 2)
         crushing = [joint for joint, material in enumerate(materials) if material.compressive_strength is not None]
         self.crushing = {j: Traction(materials[j], 2 * area[2 * j]) for j in crushing}
         self.friction = np.repeat([material.friction for material in materials], 2)
@@ -180,6 +181,17 @@ class Wall:
                     if x0 < self.centre[k, 0] < x1 and self.outlines[k][:, 1].min() < y1:
                         motion[k] = load.by[0] - turn * arm[1], load.by[1] + turn * arm[0], turn
         return motion
+
+
+def thicknesses(scene: Any) -> np.ndarray:
+    """Thickness of each block; a beam and the ground are as thick as the thickest of the others."""
+    own = [getattr(each, "thickness", None) for each in scene.block_materials]  # of which older files know nothing
+    thickness = np.array([each or scene.thickness for each in own])[scene.material_of_block]
+    others = ~scene.wall
+    if scene.beam is not None:
+        others[scene.beam.block] = True
+    thickness[others] = thickness[~others].max()
+    return thickness
 
 
 def area_and_centre(outline: np.ndarray) -> tuple[float, np.ndarray]:

@@ -20,8 +20,10 @@ from runningbond.contacts.outline import Outline
 from runningbond.contacts.search import find_contacts
 from runningbond.joints import wall_points
 from runningbond.limit import limit
+from runningbond.results import save_outcome
 from runningbond.scene import SceneError
 from runningbond.scene.plausibility import warnings
+from tests.checker import check
 from tests.walls import content, courses, write_toml
 
 THIN, THICK, DENSITY, GRAVITY = 0.12, 0.3, 1800.0, 9.81
@@ -88,6 +90,18 @@ def test_each_bed_of_a_pile_is_as_thick_as_its_own_stones(model: str) -> None:
     assert outcome.status == "collapse"
     assert outcome.lower == pytest.approx(exact, rel=0.006)
     assert outcome.upper == pytest.approx(exact, rel=0.006)
+
+
+@pytest.mark.parametrize("model", ["limit", "limit-nonassociated"])
+def test_the_checker_knows_how_thick_blocks_are(model: str, tmp_path: Path) -> None:
+    """By its own sums of weights and strengths, beside a beam and the ground."""
+    joint: dict[str, Any] = {"friction": 0.6, "cohesion": 3e3, "tensile_strength": 2e3}
+    if model == "limit":
+        joint["compressive_strength"] = 2e5
+    beam = {"height": 0.1, "mass": 40.0, "drive": {"force": [1.0, 0.0]}}
+    wall = pile([0.2, 0.1, 0.3], joint=joint, beam=beam, live="lateral")
+    save_outcome(wall.run(model).outcome, tmp_path, "", wall.scene)
+    assert check(tmp_path)
 
 
 def test_the_bed_between_two_thicknesses_crushes_where_they_share_it() -> None:
