@@ -49,7 +49,7 @@ def _sliding(scene: Scene, force: float) -> float:
         share, material = length[bed], scene.material_of_joint[bed]
         if share.sum() >= WHOLE * longest:
             mean = float(friction[material] @ share / share.sum())
-            found.append(force * mean + float(cohesion[material] @ share) * scene.thickness)
+            found.append(force * mean + float(cohesion[material] @ (share * scene.thickness_of_joints[bed])))
     return min(found)
 
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from runningbond.joints import joint_stiffness
 from runningbond.joints.closure import closure_curve, stiffness_at
 from runningbond.scene import JointMaterial, Scene, SceneError, Stiffness, scene_from_dict
@@ -100,7 +102,8 @@ def _read(wall: MeasuredWall, path: Path, features: Features) -> Scene:
 def _simplified(scene: Scene, features: Features) -> Scene:
     """The scene without joints that crush, or that close, where these are not asked for."""
     (left, _), (right, _) = scene.blocks.extent(scene.masonry)
-    pressure = max(pressed(scene), 0.0) / ((right - left) * scene.thickness)
+    thickness = float(np.average(scene.thickness_of_blocks[scene.masonry], weights=scene.blocks.area[scene.masonry]))
+    pressure = max(pressed(scene), 0.0) / ((right - left) * thickness)
     materials = scene.joint_materials
     if not features.crushes:
         materials = tuple(replace(each, **SOUND) for each in materials)

@@ -136,6 +136,24 @@ def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed()
     assert limit(scene).multiplier == pytest.approx(0.2 * pressed, rel=1e-5)
 
 
+def test_a_bed_slides_by_hand_where_its_stones_are_thinnest() -> None:
+    """The cohesion of the bed on which a storey steps back, against limit analysis; none is as thick as the wall."""
+    tables: dict[str, Any] = {
+        "wall": {"length": 1.6, "height": 0.8, "block_width": 0.4, "block_height": 0.2, "thickness": 9.0},
+        "block": {"density": 1e-3, "thickness": 0.3},
+        "materials": {"upper": {"density": 1e-3, "thickness": 0.1}},
+        "assign": [{"block": "upper", "box": [[0, 0.4], [1.6, 0.8]]}],
+        "joint": {"friction": 0.2, "cohesion": 2e4},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81},
+        "beam": {"height": 0.1, "condition": "level", "force": [0, -2e4], "drive": {"force": [1, 0]}},
+    }
+    scene = scene_from_dict(tables)
+    exact = 0.2 * 2e4 + 2e4 * 1.6 * 0.1
+    assert by_hand(scene)["sliding"] == pytest.approx(exact, rel=1e-6)
+    assert limit(scene).multiplier == pytest.approx(exact, rel=1e-5)
+
+
 def test_what_is_worked_out_by_hand_says_that_it_knows_no_ties() -> None:
     tables: dict[str, Any] = {
         "wall": {"length": 0.8, "height": 0.6, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},

@@ -220,6 +220,18 @@ def test_joints_of_every_material_have_the_features_that_are_asked_for(rung: Run
     assert (foot.closure is not None) == rung.features.closes
 
 
+def test_joints_are_as_stiff_as_under_the_load_on_stones_of_their_own_thickness(tmp_path: Path) -> None:
+    """Whichever key has it."""
+    wall, rung = one(tmp_path), next(each for each in RUNGS if not each.features.closes and each.base)
+    tables = _tables(wall, ALL)
+    own = tables["block"] | {"thickness": tables["wall"]["thickness"]}
+    stiffness = []
+    for each in (tables, tables | {"block": own, "wall": tables["wall"] | {"thickness": 9.0}}):
+        scene = scene_of(replace(wall, scene_file=write_toml(each, tmp_path / "wall.toml")), rung.features)
+        stiffness.append(joint_stiffness(scene.joint).normal)
+    assert stiffness[1] == pytest.approx(stiffness[0])
+
+
 @pytest.mark.parametrize("name", [name for name, rung in LADDER.items() if rung.base == "dem-dynamic"])
 def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_left_out(name: str) -> None:
     """They read it, as a model of the package does that is told to; pages said of all that they did not."""
