@@ -65,8 +65,8 @@ def rigid_moduli(scene: Scene) -> Moduli:
     Raises
     ------
     SceneError
-        For walls that are no running bond, whose beds or heads are of several materials or have no stiffness, and
-        whose blocks may crack.
+        For walls that are no running bond, whose blocks differ in thickness, whose beds or heads are of several
+        materials or have no stiffness, and whose blocks may crack.
     """
     check_scene(scene)
     bond = scene.bond
@@ -74,6 +74,10 @@ def rigid_moduli(scene: Scene) -> Moduli:
         raise SceneError("wall", "has no moduli in closed form: they need running bond of blocks of one size")
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "leaves no moduli in closed form: they need rigid blocks that do not crack")
+    thickness = np.unique(scene.thickness_of_blocks[scene.masonry])
+    if len(thickness) > 1:
+        told = ", ".join(f"{each:g}" for each in thickness)
+        raise SceneError("thickness of blocks", "must be one; the closed form has one for all of them", told)
     between, beds = between_blocks(scene), scene.joints.is_bed
     bed, head = (_stiffness(scene, between & chosen, what) for chosen, what in ((beds, "bed"), (~beds, "head")))
     springs = {"bed_normal": bed.normal, "bed_shear": bed.shear, "head_normal": head.normal, "head_shear": head.shear}

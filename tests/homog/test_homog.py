@@ -10,6 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from fem_interface.periodic_cell import rigid_cell
 from homog import Moduli, StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier, rigid_moduli
 from homog.model import deviation
 from runningbond.limit import limit
@@ -220,6 +221,19 @@ def test_walls_that_have_no_moduli_in_closed_form_are_refused() -> None:
     half = {"joint": "soft", "box": [[0.0, 0.0], [0.7, 2.0]], "orientation": "bed"}
     with pytest.raises(SceneError, match="bed joints = 'joint, soft': must be of one material"):
         rigid_moduli(panel(**STIFF, joints={"soft": SOFT}, assign=[half]))
+
+
+def test_moduli_of_blocks_that_differ_in_thickness_are_refused() -> None:
+    """Courses that are as thick by turns bear on beds of the thinner ones: A2222 was twice that of a periodic cell."""
+    thin = {"density": 1800.0, "thickness": 0.04}
+    rows = [{"block": "thin", "box": [[0.0, 0.12 * k], [1.44, 0.12 * k + 0.06]]} for k in range(6)]
+    scene = panel(**STIFF, wall__thickness=0.12, materials={"thin": thin}, assign=rows)
+    found, _ = rigid_cell(scene)
+    assert found[1, 1] == pytest.approx(0.06 * 80e9 * 0.04 / 0.08)
+    with pytest.raises(SceneError, match=r"thickness of blocks = '0.04, 0.12': must be one"):
+        rigid_moduli(scene)
+    own = panel(**STIFF, wall__thickness=9.0, block__thickness=0.12)
+    assert rigid_moduli(own) == rigid_moduli(panel(**STIFF))
 
 
 def test_moduli_of_open_joints_are_none() -> None:
