@@ -21,7 +21,7 @@ class Water(Action):
         wet = scene.wall[blocks.owner] & (np.maximum(high[:, 0], low[:, 0]) < x + blocks.tolerance)
         wet &= low[:, 1] < self.level
         shallow, deep = (np.maximum(0.0, self.level - end[wet, 1]) for end in (high, low))
-        weight = 1000.0 * 9.81 * scene.thickness
+        weight = 1000.0 * 9.81 * scene.thickness_of_blocks[blocks.owner[wet]]
         force = weight * (deep**2 - shallow**2) / 2
         centre = self.level - weight * (deep**3 - shallow**3) / 3 / force
         at = np.column_stack([np.full_like(centre, x), centre])

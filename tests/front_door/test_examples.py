@@ -71,6 +71,12 @@ def test_a_wall_in_one_block_is_never_weaker_than_one_of_many() -> None:
         rb.read("panel-01").with_({"joint.cohesion": 10.0}).run(model)
 
 
+def test_water_presses_on_blocks_as_thick_as_they_are() -> None:
+    """A dam as thick all over bears the same water, whichever key has its thickness."""
+    dam = example("own_load")["dam"]
+    assert dam.with_({"block.thickness": 0.5}).run("limit").multiplier == pytest.approx(dam.run("limit").multiplier)
+
+
 @pytest.mark.parametrize("name", ["make_mesh", "own_load", "own_model"])
 def test_examples_run_as_they_are(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
