@@ -177,10 +177,14 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
         return ForceSolution.none("budget" if point is None else point.status, iterations), True
     with finishing() as interruptions:
         forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
-        found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
-        if found is None or not (point.interrupted or _width(system, found) <= closest(system)):
+    found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
+    is_interrupted = point.interrupted or bool(interruptions)
+    if found is None or not (is_interrupted or _width(system, found) <= closest(system)):
+        try:
             found = _beside_vertex(program, forces, motion) or found
-    status: ProgramStatus = "budget" if point.interrupted or interruptions else "optimal"
+        except KeyboardInterrupt:
+            is_interrupted = True
+    status: ProgramStatus = "budget" if is_interrupted else "optimal"
     if found is None:
         return ForceSolution.none("numerical" if status == "optimal" else status, iterations), True
     return replace(found, status=status, iterations=iterations), True

@@ -180,7 +180,7 @@ class Scene:
     def _given_density(self) -> Array:
         density = np.array([material.density for material in self.block_materials])[self.material_of_block]
         if self.beam is not None:
-            density[self.beam.block] = self.beam.mass / self._extruded[self.beam.block]
+            density[self.beam.block] = self.beam.mass / self._volume[self.beam.block]
         return frozen(density)
 
     @cached_property
@@ -195,8 +195,8 @@ class Scene:
     @cached_property
     def density_in_motion(self) -> Array:
         """Density of each block as it vibrates, ``(nb,)`` [kg/m³]: its own, a beam's such that it has some mass."""
-        mass = float(self._given_density[self.masonry] @ self._extruded[self.masonry])
-        beam = 0.0 if self.beam is None else float(self._extruded[self.beam.block].sum())
+        mass = float(self._given_density[self.masonry] @ self._volume[self.masonry])
+        beam = 0.0 if self.beam is None else float(self._volume[self.beam.block].sum())
         return self._with_beam_of(LIGHTEST * mass / beam if beam else 0.0)
 
     def _with_beam_of(self, least: float) -> Array:
@@ -230,7 +230,7 @@ class Scene:
         return frozen(self.thickness_of_blocks[self.joints.block].min(axis=1))
 
     @cached_property
-    def _extruded(self) -> Array:
+    def _volume(self) -> Array:
         """Volume of each block, ``(nb,)`` [m³]."""
         return frozen(self.thickness_of_blocks * self.blocks.area)
 
