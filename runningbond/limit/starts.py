@@ -37,8 +37,10 @@ ROUND = 4
 Origin: TypeAlias = Literal["random", "balanced", "known", "neighbourhood"]
 """What a start is made from: random pressures, those that balance a random load, or those of a certificate."""
 
-FIRST: tuple[Origin, ...] = ("random", "balanced", "known", "neighbourhood")
-ORIGINS: tuple[Origin, ...] = (*FIRST, "known", "balanced", "known", "neighbourhood")
+ORIGINS: tuple[Origin, ...] = (
+    *("random", "balanced", "known", "neighbourhood"),
+    *("known", "balanced", "known", "neighbourhood"),
+)
 """Origins of the rounds, in turn."""
 
 LOWEST = 0.5
