@@ -153,7 +153,7 @@ def _why_not(scene: Scene, bond: Bond) -> str:
     area = scene.blocks.area[movable].sum()
     if not np.isclose(area, np.prod(high - low), rtol=1e-6):
         return "it needs a full rectangular panel with flush ends and no openings"
-    if not _is_running_bond(scene, bond):
+    if not _is_full_bond(scene, bond):
         return "it needs running bond, every course half a block off its neighbours"
     return ""
 
@@ -170,8 +170,8 @@ def _is_lateral(scene: Scene) -> bool:
     )
 
 
-def _is_running_bond(scene: Scene, bond: Bond) -> bool:
-    """Whether the head joints are those of running bond: one at every second half block, shifted course by course."""
+def _is_full_bond(scene: Scene, bond: Bond) -> bool:
+    """Whether a panel has all head joints of running bond: at every second half block, shifted course by course."""
     movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
     heads = head_places(scene, bond, movable[scene.joints.block].all(axis=1) & ~scene.joints.is_bed, movable)

@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from runningbond.compare.advice.experiment import FILE, write_errors
+from runningbond.pictures.legend import thickness_text
 from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.results.outcome import two_digits
@@ -152,12 +153,10 @@ def _rig(wall: MeasuredWall, one: Prediction) -> str:
     """Size and loads in words."""
     beam = one.scene.beam
     (left, bottom), (right, top) = one.scene.blocks.extent(one.scene.masonry)
-    thickness = one.scene.thickness_of_blocks[one.scene.masonry]
-    sizes = dict.fromkeys(f"{1e3 * size:.0f}" for size in (thickness.min(), thickness.max()))
     pressed = -beam.force[1] if beam else vertical_load(wall)
     where = "from a scene of its own" if wall.scene_file else f"from line {wall.row.line} of {wall.row.path.name}"
     kind = "pushed to and fro" if wall.is_cyclic else "pushed to one side"
     return (
-        f"{1e3 * (right - left):.0f} × {1e3 * (top - bottom):.0f} × {' … '.join(sizes)} mm, under "
+        f"{1e3 * (right - left):.0f} × {1e3 * (top - bottom):.0f} mm, {thickness_text(one.scene)}, under "
         f"{pressed / 1e3:.0f} kN, {kind}; made {where}."
     )

@@ -243,10 +243,9 @@ def _narrowed(
         following = InnerProgram(system, joints, known)
         accuracy = min(max(width, aim) / 1e3, ROUGH)
         try:
-            found_point = interior_point(following.arguments(), accuracy)
+            program, point = following, interior_point(following.arguments(), accuracy)
         except KeyboardInterrupt:
             return program, point and replace(point, interrupted=True), iterations
-        program, point = following, found_point
         iterations += point.iterations
         if point.status != "optimal":
             break

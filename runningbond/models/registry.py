@@ -40,7 +40,7 @@ ELASTIC = MOTION | {"block.young", "block.poisson"}
 
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
 EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.extras` what a static model may know,
-FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a way
+FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a path
 KERNELS = 0.3  # seconds until the kernels of models that follow a wall are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
 FAR = 0.02  # motion of a wall, in its smaller side: a block that topples has lost as much of its resistance
@@ -260,9 +260,9 @@ def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     if "block.young" not in model.reads:
         scene = scene.with_block(young=None)
     gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
-    way, load = outcome.curve.T
+    moved, load = outcome.curve.T
     low, high = scene.blocks.extent(scene.wall)
-    rests = np.abs(way[load == outcome.lower]) / (high - low).min()
+    rests = np.abs(moved[load == outcome.lower]) / (high - low).min()
     moved = rests[0] if len(rests) else 0.0
     height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
     soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"

@@ -161,8 +161,8 @@ def finite_peak(known: Knowledge, step: Step) -> Outcome:
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
     distance = FARTHER * max(known.displacement or 0.0, tolerance) * scene.block_size
-    way: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam is led as far as its drive says
-    outcome = run_model(model, scene, tolerance, displacements="finite", **way)
+    reach: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam is led as far as its drive says
+    outcome = run_model(model, scene, tolerance, displacements="finite", **reach)
     if outcome.status == "collapse" and bound is not None and outcome.lower is not None and outcome.lower > bound:
         message = f"above the load that no wall bears at small displacements: {outcome.message}"
         outcome = replace(outcome, status="undecided", multiplier=None, message=message)

@@ -71,17 +71,20 @@ def estimate(
         seconds *= law.weightless
     if scene.inner_joint is not None:
         seconds *= law.cracked
-    # What a model does not read costs it nothing.
-    joints = scene.materials_of_joints
-    softens = any(each.softens for each in joints) and "joint.fracture_energy_1" in model.reads
-    crushes = (
-        any(each.compressive_strength is not None for each in joints) and "joint.compressive_strength" in model.reads
-    )
-    closes = any(each.closure is not None for each in joints) and "joint.closure" in model.reads
-    dearer = max(law.softened if softens else 1.0, law.crushed if crushes or closes else 1.0)
-    dearer *= law.soft if asks_others(scene, {}) else 1.0
-    seconds = dearer * (draws * seconds + law.start)
+    seconds = _dearer(model, law, scene) * (draws * seconds + law.start)
     return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
+
+
+def _dearer(model: Model, law: Cost, scene: Scene) -> float:
+    """How many times as much walls cost for what a model reads of their materials."""
+    joints = scene.materials_of_joints
+    causes = (
+        ("fracture_energy_1", any(each.softens for each in joints), law.softened),
+        ("compressive_strength", any(each.compressive_strength is not None for each in joints), law.crushed),
+        ("closure", any(each.closure is not None for each in joints), law.crushed),
+    )
+    dearest = max((factor for key, there, factor in causes if there and f"joint.{key}" in model.reads), default=1.0)
+    return dearest * (law.soft if asks_others(scene, {}) else 1.0)
 
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> Pace:
