@@ -1,4 +1,4 @@
-"""A joint law of one's own: dry friction that is polished away as joints slide, down to a share of itself."""
+"""A user-defined joint law: dry friction that decreases with slip, as if joints were polished, to a residual share."""
 
 import math
 from typing import Any
@@ -11,12 +11,12 @@ from runningbond.joints.compiled import kernel
 from runningbond.joints.law import COMMON_ROWS
 from runningbond.scene import Array, JointMaterial
 
-POLISHED, DISTANCE = 0.5, 1e-4  # share of friction that is left, and slip [m] over which it goes
+POLISHED, DISTANCE = 0.5, 1e-4  # residual share of the friction, and slip [m] over which the friction decays
 WORK, VISCOUS_WORK, OPENING, SLIP, PLASTIC, POLISH = range(6)  # rows of the history
 
 
 def constants(material: JointMaterial) -> tuple[float, ...]:
-    """What `polish` knows of a material: k_n, k_t [Pa/m], no tension, tan φ."""
+    """Constants of a material for `polish`: k_n, k_t [Pa/m], no tensile strength, tan φ."""
     stiffness = joint_stiffness(material)
     return stiffness.normal, stiffness.shear, 0.0, material.friction
 
@@ -25,7 +25,7 @@ def constants(material: JointMaterial) -> tuple[float, ...]:
 def polish(
     opening: Array, slip: Array, parameters: Any, history: Array, viscosity: float, normal: Array, shear: Array
 ) -> None:
-    """Tractions [Pa] of joint points from their jumps [m]; viscosity acts on the jumps' change since the last step."""
+    """Compute tractions [Pa] of joint points from their jumps [m]; the viscous part is from the change of the jumps."""
     segments, constants = parameters
     for segment in range(len(constants)):
         k_n, k_t, friction = constants[segment, 0], constants[segment, 1], constants[segment, 3]

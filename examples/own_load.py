@@ -1,4 +1,4 @@
-"""A load of one's own: water against the left face of a wall; λ multiplies the water's weight."""
+"""A user-defined load: water against the left face of a wall; λ multiplies the weight of the water."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from runningbond.scene import Action, Forces, Scene
 
 @dataclass(frozen=True)
 class Water(Action):
-    """Water as deep as `level` [m] above the ground, on the face where x is least."""
+    """Water with its surface at y = `level` [m], against the face with the smallest x."""
 
     level: float
 
     def forces(self, scene: Scene) -> Forces:
-        """The pressure on each block's face as a force at its centre of pressure."""
+        """Pressure on each block's face as a force at the centre of pressure."""
         blocks, (x, _) = scene.blocks, scene.blocks.extent(scene.wall)[0]
         high, low = blocks.vertices, blocks.vertices[blocks.successor]  # faces on the left run downwards
         wet = scene.wall[blocks.owner] & (np.maximum(high[:, 0], low[:, 0]) < x + blocks.tolerance)

@@ -1,4 +1,4 @@
-"""A model of one's own: the wall as one block that slides on the ground or topples about its corner."""
+"""A user-defined model: the wall as one rigid block that slides on the ground or topples about its corner."""
 
 import time
 
@@ -9,7 +9,7 @@ from runningbond.scene import Scene, SceneError
 
 
 def monolith(scene: Scene, tolerance: float = 0.01) -> Outcome:
-    """Collapse of a wall under lateral load if none of its own joints gave way: no true load is above it."""
+    """Collapse of a wall under lateral load if its joints hold it together: an upper bound of the collapse load."""
     start = time.perf_counter()
     if scene.joint.cohesion > 0:
         raise SceneError("model monolith", "has no answer for this scene: it needs dry joints, joint.cohesion = 0")

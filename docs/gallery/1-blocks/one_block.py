@@ -2,7 +2,7 @@
 One block topples or slides
 ===========================
 
-A block of width b and height h slides at λ = tan φ or topples about its corner at λ = b / h, whichever is less.
+A block of width b and height h slides at λ = tan φ or topples about its corner at λ = b / h, whichever is smaller.
 """
 
 import matplotlib.pyplot as plt
@@ -21,6 +21,6 @@ axes.set(xlabel="width of the block [m]", ylabel="λ", title="A block one metre 
 axes.legend()
 
 # %%
-# The slender one turns about its corner, the circle.
+# The slender block rotates about its corner, marked by a circle.
 results[2].plot()
 # sphinx_gallery_thumbnail_number = 2

@@ -2,7 +2,7 @@
 A stack of blocks
 =================
 
-With n blocks on top of each other λ = b / (n h): the whole stack turns about the lowest corner.
+For n blocks on top of each other λ = b / (n h): the whole stack rotates about the lowest corner.
 """
 
 import runningbond as rb

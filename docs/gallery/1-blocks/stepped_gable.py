@@ -2,8 +2,7 @@
 A stepped gable
 ===============
 
-Courses need not have the same length: each is a list of widths in blocks, from left to right; a negative number is a
-gap.
+Courses may have different lengths: each is a list of widths in blocks, from left to right; a negative number is a gap.
 """
 
 import runningbond as rb
@@ -15,7 +14,7 @@ gable = rb.Wall.courses(base + steps, **size, density=1900.0, friction=0.6, titl
 gable.plot()
 
 # %%
-# Pushed to the right it breaks off above a stepped crack, its top going along.
+# Pushed to the right, the part above a stepped crack breaks off and takes the top along.
 result = gable.run("limit-nonassociated")
 print(f"λ = {result.lower:.4f} … {result.upper:.4f}")
 result.plot()

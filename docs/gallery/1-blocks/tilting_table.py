@@ -2,7 +2,7 @@
 A wall on a tilting table
 =========================
 
-Dry walls are often tested on a table that turns until they fall. λ is then the tangent of the table's angle, and the
+Dry walls are often tested on a table that tilts until they fall. λ is then the tangent of the table's angle, and the
 message gives the angle itself.
 """
 

@@ -2,8 +2,8 @@
 What dilatancy hides
 ====================
 
-Classical limit analysis lets joints open as they slide. True friction does not, and blocks on end then lose up to
-half of their load: to the left the associated mechanism, to the right the weakest one certified with true friction.
+In classical limit analysis joints open as they slide. With true friction they do not, and walls of blocks on end lose
+up to half of their load. Left: the associated mechanism; right: the weakest one certified with true friction.
 """
 
 import matplotlib.pyplot as plt

@@ -2,7 +2,7 @@
 What a little mortar does
 =========================
 
-Cohesion grows in importance as walls shrink: it holds areas, weight pulls at volumes.
+The smaller a wall, the more cohesion matters: it acts on areas, weight on volumes.
 """
 
 import matplotlib.pyplot as plt
@@ -19,5 +19,5 @@ axes.plot(np.array(cohesion) / 1e3, table["multiplier"], "o-")
 axes.set(xlabel="cohesion [kPa]", ylabel="λ", title=wall.scene.title)
 
 # %%
-# The mechanism changes with it: here at 4 kPa.
+# The mechanism depends on the cohesion: here at 4 kPa.
 wall.with_({"joint.cohesion": 4e3}).run("limit").plot()

@@ -2,8 +2,7 @@
 How stiff a wall of rigid blocks is
 ===================================
 
-All of the give is in the joints: moduli of the equivalent continuum over the shape of the blocks
-(:cite:t:`cecchi2004`).
+Only the joints deform: moduli of the equivalent continuum over the shape of the blocks (:cite:t:`cecchi2004`).
 """
 
 import matplotlib.pyplot as plt

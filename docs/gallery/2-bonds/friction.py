@@ -2,8 +2,8 @@
 The more friction, the better, up to a point
 ============================================
 
-With little friction a panel slides at λ = tan φ; with more, blocks turn, and more friction helps only by letting the
-crack rise more steeply.
+With little friction a panel slides at λ = tan φ. With more friction blocks rotate, and friction helps only because the
+crack rises more steeply.
 """
 
 import matplotlib.pyplot as plt

@@ -2,7 +2,7 @@
 A panel of running bond
 =======================
 
-The smallest script of a wall: build it, see it, let it fall.
+The shortest script: build a wall, plot it, and compute its collapse.
 """
 
 import runningbond as rb
@@ -19,7 +19,7 @@ wall = rb.Wall.running_bond(
 wall.plot()
 
 # %%
-# A wedge over a stepped crack turns about the far corner.
+# A wedge above a stepped crack rotates about the far corner.
 result = wall.run("limit")
 print(result)
 result.plot()

@@ -2,8 +2,8 @@
 Slender panels fall earlier
 ===========================
 
-Where the crack no longer reaches the top corner the wedge is cut off by the panel's side, and λ falls with the
-height.
+If the panel is so high that the crack ends at its side, below the top corner, the side cuts off the wedge, and λ
+decreases with the height.
 """
 
 import matplotlib.pyplot as plt
@@ -21,5 +21,5 @@ axes.set(xlabel="H / L", ylabel="λ", title="Blocks of 0.24 × 0.12 m, tan φ = 
 axes.legend()
 
 # %%
-# The highest of them.
+# The highest panel.
 walls[-1].run("limit").plot()

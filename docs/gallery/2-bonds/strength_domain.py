@@ -2,8 +2,8 @@
 Strength of running bond as a continuum
 =======================================
 
-In-plane stresses that joints of running bond can carry, for three shapes of blocks: under a pressure across the beds,
-how much may a wall be sheared? (:cite:t:`debuhan1997`)
+In-plane stresses that the joints of running bond can carry, for three shapes of blocks: how much shear does a wall
+carry under a pressure normal to the bed joints? (:cite:t:`debuhan1997`)
 """
 
 import matplotlib.pyplot as plt

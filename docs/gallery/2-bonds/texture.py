@@ -2,8 +2,8 @@
 Long blocks tie a wall together
 ===============================
 
-Panels of one size in blocks of other shapes: the continuum's closed form has the trend, blocks of this size lie above
-it.
+Panels of the same size with blocks of different shapes: the closed form for a continuum shows the trend; panels of
+blocks of this size carry more.
 """
 
 import matplotlib.pyplot as plt

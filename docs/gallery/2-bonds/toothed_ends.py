@@ -2,7 +2,7 @@
 Flush and toothed ends
 ======================
 
-Without the half blocks that close its courses a panel is lighter where it matters.
+Without the half blocks that close its courses a panel is lighter where its weight matters.
 """
 
 import matplotlib.pyplot as plt

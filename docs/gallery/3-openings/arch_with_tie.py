@@ -2,8 +2,8 @@
 An arch, with and without its tie
 =================================
 
-Drawn in DXF, voussoirs on a layer of their own; a load stands on the haunch. λ is that load in newtons; without
-the bar between the springings a sixth of it thrusts over a pier.
+The arch is drawn in DXF, with voussoirs on a separate layer; a load stands on the haunch. λ is this load in newtons.
+Without the bar between the springings a sixth of the load is enough for the thrust to overturn a pier.
 """
 
 from pathlib import Path

@@ -2,7 +2,7 @@
 Courses of different heights, stones of different weight
 ========================================================
 
-A plinth of large heavy stones under courses that get lower. Materials have names, and are assigned by boxes.
+A plinth of large heavy stones under courses of decreasing height. Materials have names and are assigned by boxes.
 """
 
 import runningbond as rb
@@ -21,5 +21,5 @@ wall = rb.Wall.running_bond(
 wall.plot()
 
 # %%
-# Pushed to the right, what is above a stepped crack turns on the edge of the plinth.
+# Pushed to the right, the part above a stepped crack rotates about the edge of the plinth.
 wall.run("limit").plot()

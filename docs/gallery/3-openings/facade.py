@@ -2,7 +2,7 @@
 A façade of two storeys
 =======================
 
-Door, windows, lintels of oak and granite, a floor and a roof that load it: a scene file of eighty lines
+Door, windows, lintels of oak and granite, a floor and a roof as loads: a scene file of eighty lines
 (``examples/walls/facade.toml``, on the page of :doc:`six walls </walls>`).
 """
 
@@ -15,6 +15,6 @@ facade = rb.read(folder / "facade.toml")
 facade.plot()
 
 # %%
-# Pushed to the right it comes apart at the windows.
+# Pushed to the right, the façade separates at the windows.
 facade.run("limit").plot()
 # sphinx_gallery_thumbnail_number = 2

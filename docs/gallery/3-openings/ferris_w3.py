@@ -2,8 +2,8 @@
 A wall with an opening
 ======================
 
-The wall W3 of :cite:t:`ferris2001`, given course by course. They print 0.404 for joints that dilate and 0.356 for
-true friction.
+The wall W3 of :cite:t:`ferris2001`, given course by course. Their results are 0.404 for joints that dilate and 0.356
+for true friction.
 """
 
 import runningbond as rb

@@ -2,7 +2,7 @@
 A band of mortar in a dry wall
 ==============================
 
-Three courses laid in mortar hold together what is above the crack (``examples/walls/mortared_band.toml``).
+Three courses laid in mortar hold the part above the crack together (``examples/walls/mortared_band.toml``).
 """
 
 from pathlib import Path

@@ -2,7 +2,7 @@
 A pier that settles
 ===================
 
-The ground under the right pier sinks by 20 mm. λ is the share of the dead load that it still bears
+The ground under the right pier sinks by 20 mm. λ is the share of the dead load that it still carries
 (``examples/walls/settling_pier.toml``).
 """
 
@@ -17,5 +17,5 @@ print(result.message)
 result.plot()
 
 # %%
-# The reaction falls at once to what the arch above the opening leaves to the pier.
+# The reaction drops at once to the part of the load that the arch above the opening leaves on the pier.
 result.plot("curve")

@@ -2,9 +2,9 @@
 A wall that steps back
 ======================
 
-Storeys of old walls step back: 60 cm below, 45 and 30 cm above. Blocks have a ``thickness`` of their own; joints are as
-thick as the thinner block. Weight that is taken from above takes its push and its lever along: λ, the push as a share
-of the weight, is larger than of a wall as thick all over.
+Storeys of old walls step back: 60 cm below, 45 and 30 cm above. Blocks have their own ``thickness``; joints are as
+thick as the thinner block. Less weight above also means less push, where its lever arm is longest: λ, the push as a
+share of the weight, is larger than for a wall of constant thickness.
 """
 
 import runningbond as rb

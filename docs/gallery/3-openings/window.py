@@ -2,7 +2,7 @@
 A window under a lintel
 =======================
 
-Openings are cut out of the bond at any place. This wall is not symmetric: it matters which way it is pushed.
+Openings can be cut out of the bond anywhere. This wall is not symmetric, so the direction of the push matters.
 """
 
 import matplotlib.pyplot as plt

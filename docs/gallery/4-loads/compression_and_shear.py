@@ -2,7 +2,7 @@
 The more pressure, the more shear
 =================================
 
-A shear wall under a beam: its horizontal strength over the vertical load, the beam turning freely or kept level.
+A shear wall under a beam: its horizontal strength over the vertical load, with a beam that is free to rotate or level.
 """
 
 import matplotlib.pyplot as plt
@@ -23,5 +23,5 @@ axes.set(xlabel="pressed with [kN]", ylabel="bears horizontally [kN]", title="Be
 axes.legend()
 
 # %%
-# Under the level beam the thrust goes from corner to corner.
+# Under the level beam the thrust line runs from corner to corner.
 walls[-1].run("limit").plot()

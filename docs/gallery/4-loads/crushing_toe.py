@@ -2,7 +2,7 @@
 A toe that crushes
 ==================
 
-Joints of finite compressive strength: a wall that rocks does not stand on its very corner, and bears less.
+With joints of finite compressive strength a rocking wall cannot stand on its corner only, and carries less.
 """
 
 import matplotlib.pyplot as plt
@@ -24,5 +24,5 @@ axes.set_xticks(strengths, map(str, strengths))
 axes.legend()
 
 # %%
-# At 4 MPa; crosses mark ends of joints that crush, where blocks overlap.
+# At 4 MPa. Crosses mark the ends of crushing joints, where blocks overlap.
 results[2].plot()

@@ -2,8 +2,8 @@
 A dam against water
 ===================
 
-Water presses on the upstream face; λ multiplies its weight. The load is an object of one's own, from
-``examples/own_load.py``; for this dam λ = 3 / h², exactly.
+Water presses on the upstream face; λ multiplies the weight of the water. The load is a user-defined object, from
+``examples/own_load.py``; for this dam λ = 3 / h² exactly.
 """
 
 import runpy
@@ -25,5 +25,5 @@ axes.set(xlabel="depth of the water [m]", ylabel="λ", title="A dam that slides"
 axes.legend()
 
 # %%
-# One metre of water, three times as heavy as it is.
+# At one metre of water the dam fails if water is three times as heavy as it really is.
 results[-1].plot()

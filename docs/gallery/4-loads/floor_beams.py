@@ -2,7 +2,7 @@
 Floors that hold a wall
 =======================
 
-The ends of three floor beams and half a roof weigh on this wall, and what they press together stands longer
+The ends of three floor beams and half a roof load this wall; the parts that they press together stand longer
 (``examples/walls/floor_beams.toml``).
 """
 

@@ -2,7 +2,7 @@
 A floor that rests on one edge
 ==============================
 
-Dead loads come as points, lines and moments; here a line load along the top, and the moment of a balcony that is held
+Dead loads may be point loads, line loads and moments; here a line load along the top, and the moment of a balcony held
 by the corner stone.
 """
 
@@ -17,6 +17,6 @@ wall = rb.Wall.running_bond(
 wall.plot()
 
 # %%
-# How it falls when it is pushed to the right.
+# The mechanism for a push to the right.
 wall.run("limit").plot()
 # sphinx_gallery_thumbnail_number = 2

@@ -2,7 +2,7 @@
 A load at the top
 =================
 
-Weightless panels between pin and roller, as :cite:t:`baraldi2018` load them: λ is the load in newtons.
+Weightless panels on a pin and a roller, loaded as in :cite:t:`baraldi2018`: λ is the load in newtons.
 """
 
 import runningbond as rb

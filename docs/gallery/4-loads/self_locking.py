@@ -2,8 +2,8 @@
 A wall that no load brings down
 ===============================
 
-Hold both lower corners of that panel horizontally, and a strut of steep joints locks: more load only presses more.
-The status is ``unbounded``, and no number is made up.
+If both lower corners of the panel are held horizontally, a strut of steep joints locks: more load only means more
+pressure. The status is ``unbounded``, and there is no multiplier.
 """
 
 import runningbond as rb

@@ -2,8 +2,8 @@
 How far a wall may lean
 =======================
 
-Pushed far, W1 bears ever less until it stands on the brink by itself. Codes assess walls by this curve, and draw it
-straight: from the load of limit analysis to nothing, where the wall turns over as one block would.
+Pushed far, W1 carries less and less until it stands on the brink without any load. Codes assess walls by this curve,
+which they assume straight: from the load of limit analysis to zero, where the wall overturns like a single block.
 """
 
 import matplotlib.pyplot as plt

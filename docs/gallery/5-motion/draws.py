@@ -2,8 +2,8 @@
 The same wall twenty times
 ==========================
 
-Sizes and frictions of real blocks scatter. Draws repeat a run on walls that differ within such tolerances, and give
-the spread of the answer.
+Sizes and frictions of real blocks scatter. Draws repeat a run on walls that vary within such tolerances, and give the
+spread of the answer.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 One wall, four models
 =====================
 
-Bounds, certificates and histories of one wall beside each other. True friction has no single collapse load: what a
-model prints is as good as its bracket.
+Bounds, certified loads and loading histories of one wall. With true friction there is no single collapse load: the
+result of a model is only as good as its bracket.
 """
 
 import matplotlib.pyplot as plt

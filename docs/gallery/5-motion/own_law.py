@@ -2,8 +2,8 @@
 Joints that are polished as they slide
 ======================================
 
-A joint law of one's own, from ``examples/own_law.py``: friction falls to half of itself over a tenth of a millimetre
-of slip. Walls that slide a little before they turn fall earlier; :doc:`/how-to/own-law` takes the law apart.
+A user-defined joint law, from ``examples/own_law.py``: friction drops to half over a tenth of a millimetre of slip.
+Walls that slide a little before they rotate fall earlier; :doc:`/how-to/own-law` explains the law.
 """
 
 import runpy

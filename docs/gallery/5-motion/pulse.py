@@ -2,8 +2,8 @@
 A pier shaken by a pulse
 ========================
 
-An earthquake is no multiplier: ``respond`` follows a wall through a motion of its ground, and says whether it stands.
-The same pulse twice, once doubled.
+An earthquake is not a load multiplier: ``respond`` follows a wall through a motion of its ground, and reports whether
+it stands. Here the same pulse acts twice, the second time doubled.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 A pushover curve past its peak
 ==============================
 
-``dem-static`` brings a wall to rest load by load, and follows it on when it bears no more. A hundredth of a
-millimetre is all the warning that a dry wall on stiff joints gives.
+``dem-static`` brings a wall to rest load by load, and follows it past the largest load that it carries. A dry wall on
+stiff joints moves by only a hundredth of a millimetre before it falls.
 """
 
 import runningbond as rb
@@ -13,6 +13,6 @@ print(f"{result.lower:.4f} … {result.upper:.4f}")
 result.plot("curve")
 
 # %%
-# How it falls: forces in the joints as thin lines.
+# The mechanism, with the forces in the joints as thin lines.
 result.plot()
 # sphinx_gallery_thumbnail_number = 2

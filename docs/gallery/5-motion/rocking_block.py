@@ -2,8 +2,8 @@
 A block that rocks: λ to the very end
 =====================================
 
-At finite displacements a rocking block bears λ = tan(α − θ), θ its rotation and tan α = b / h. One run follows it
-until it stands on its corner.
+At finite displacements a rocking block carries λ = tan(α − θ), with its rotation θ and tan α = b / h. One run follows
+it until it is balanced on its corner.
 """
 
 import matplotlib.pyplot as plt

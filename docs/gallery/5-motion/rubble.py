@@ -2,7 +2,7 @@
 Rubble that is shaken
 =====================
 
-Stones are given corner by corner, as a survey has them, and need not be convex: here cells of a crooked grid, joined.
+Stones are given corner by corner, as in a survey, and need not be convex: here merged cells of an irregular grid.
 """
 
 import numpy as np

@@ -2,8 +2,8 @@
 When blocks are soft
 ====================
 
-``fem`` takes blocks as stiff as the scene says. The stiffness of blocks shows before collapse; the collapse load hardly
-knows it.
+``fem`` uses the stiffness of the blocks given in the scene. It affects the displacements before collapse, but barely
+the collapse load.
 """
 
 import matplotlib.pyplot as plt

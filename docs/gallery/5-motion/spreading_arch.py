@@ -1,8 +1,8 @@
 """
-An arch whose abutment goes away
-================================
+An arch whose abutment moves away
+=================================
 
-At small displacements two blocks thrust as they were built; at finite ones they sink, thrust ever harder, and fall.
+At small displacements two blocks keep their initial thrust; at finite ones they sink, thrust more and more, and fall.
 """
 
 import matplotlib.pyplot as plt

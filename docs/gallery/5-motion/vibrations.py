@@ -2,8 +2,8 @@
 How a wall sways
 ================
 
-Natural vibrations of a wall at rest under its weight, closed joints being springs. The first three sway, bend and
-bounce.
+Natural vibrations of a wall at rest under its weight, with closed joints as springs. In the first three the wall sways,
+bends and bounces.
 """
 
 import matplotlib.pyplot as plt
