@@ -1,4 +1,4 @@
-"""The search for contacts: which sides of which blocks are near enough to touch before the next search."""
+"""Contact search: the sides of blocks that are near enough to touch before the next search."""
 
 import math
 from dataclasses import dataclass, replace
@@ -8,50 +8,50 @@ import numpy as np
 
 from runningbond.scene import Array, Indices, Mask, Unsigned
 
-from .near import near_sides, reaches, resting_ends
+from .near import near_sides, overlaps, resting_ends
 from .outline import FLAT, Outline, side_pair
 from .rigid_sides import Placed, RigidSides, gather_sides, in_space
 
 FASTEST_OPENING = math.sqrt(5)
-"""Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
+"""Largest change of an opening per distance that the corner moves (`sharp_opening`)."""
 
-DEEP = 0.1
-"""Depth of an end, in margins of the outline, from which on it is asked whether its blocks reach as deep."""
+CHECKED_DEPTH = 0.1
+"""Depth of an end, in margins of the outline, above which it is checked that its blocks overlap as deep."""
 
 SAME_ANGLE = 1e-9
 """Difference of two angles that is rounding [rad]."""
 
 LEAST_OVERLAP = 1e-6
-"""Least overlap of two sides for which their contact has a stiffness, in lengths of the shorter one."""
+"""Least overlap for the area of a contact between two sides, relative to the length of the shorter side."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Ends of facing sides, each array a row an end."""
+    """Contacts at the two ends of the overlap of facing sides; each array has one row per end."""
 
     motion: Array  # (3 nb,) motion of the blocks when these contacts were found
-    margin: float  # distance up to which they were sought [m]
+    margin: float  # distance up to which contacts were searched for [m]
     # (n, 6) corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a
     ends: Unsigned
-    inwards: Array  # (n,) 1 where inwards is along the tangent of a's side, −1 where it is against it
-    tilt: Array  # (n,) tilt of side against side, less the turns of the blocks [rad]
-    area: Array  # (n,) area [m²] the end stands for
-    joint: Indices  # (n,) joint that the two sides made on the undeformed wall; −1 for sides that met later
-    # (n,) whether the end is of such a joint and has not been lost since; none is when first found
+    inwards: Array  # (n,) 1 if the overlap lies along the tangent of a's side from the end, −1 if against it
+    tilt: Array  # (n,) tilt of side against side, minus the rotations of the blocks [rad]
+    area: Array  # (n,) area [m²] that the end represents
+    joint: Indices  # (n,) joint that the two sides formed on the undeformed wall; −1 for sides that met later
+    # (n,) whether the end belongs to such a joint and every search since has found it; `find_contacts` sets none
     glued: Mask
 
     def __len__(self) -> int:
         return len(self.inwards)
 
     def chosen(self, rows: Mask | Indices) -> "Contacts":
-        """Some of these."""
+        """The contacts of some rows."""
         return replace(
             self, **{name: getattr(self, name)[rows] for name in ("ends", "inwards", "tilt", "area", "joint", "glued")}
         )
 
     @cached_property
     def pairs(self) -> Indices:
-        """The two ends of each pair of facing sides, the low one first; twice the same where there is but one."""
+        """The two ends of each pair of facing sides ``(n, 2)``, the low one first; twice the same end if alone."""
         sides = side_pair(*self.ends[:, 4:].astype(np.int64).T)
         _, first, pair = np.unique(sides, return_index=True, return_inverse=True)
         ends, row = np.full((len(first), 2), -1), np.arange(len(self))
@@ -60,13 +60,13 @@ class Contacts:
 
     @property
     def key(self) -> Indices:
-        """Number by which an end is recognised from one search to the next, ``(n,)``."""
+        """Number that identifies each end from one search to the next, ``(n,)``."""
         return np.asarray(self.ends[:, :2].astype(np.int64) @ [2**32, 1] * 2 + (self.inwards > 0))
 
     def points(self, number: int = 0) -> tuple[Indices, Indices]:
-        """A key of each end, or of a number of points along each pair (`along`), and the end that it is or −1.
+        """Keys of all ends, or of `number` points along each pair (`along`), and the end at each point or −1.
 
-        All points of an end that is alone are that end, and none of those between two.
+        All points of an end without partner are that end; points between two ends are neither.
         """
         if not number:
             return self.key, np.arange(len(self))
@@ -79,7 +79,7 @@ class Contacts:
         return key.ravel(), end.ravel()
 
     def geometry(self, outline: Outline) -> RigidSides:
-        """The arrays that `gather_sides` and `scatter_sides` share, with buffers of their own."""
+        """The arrays that `gather_sides` and `scatter_sides` share, with new buffers."""
         return RigidSides(
             outline.corner_arrays,
             outline.radius.copy(),
@@ -97,18 +97,18 @@ class Contacts:
     def gathered(self, outline: Outline, motion: Array) -> RigidSides:
         """The arrays of `geometry` as `gather_sides` leaves them after a motion ``(3 nb,)``."""
         sides = self.geometry(outline)
-        gather_sides(motion, tuple(sides), *np.zeros((2, len(self))))  # plain, as in the steps: compiled once
+        gather_sides(motion, tuple(sides), *np.zeros((2, len(self))))  # a plain tuple, as in steps: compiled once
         return sides
 
     def resultants(self, outline: Outline, contact: Array, force: Array) -> Array:
-        """Resultants on each block, moments about the origin, ``(nb, 3)`` [N, N, N m].
+        """Resultant contact forces on each block, moments about the origin, ``(nb, 3)`` [N, N, N m].
 
         Parameters
         ----------
         contact : (n, 4) float
             Point [m] and normal of each end in space.
         force : (2, n) float
-            Its normal and tangential force [N].
+            Normal and tangential force of each end [N].
         """
         (x, y), (fx, fy) = contact[:, :2].T, in_space(force[0], force[1], contact[:, 2:])
         b, a = outline.blocks.owner[self.ends[:, 4:].astype(np.int64)].T
@@ -119,9 +119,10 @@ class Contacts:
 
 
 def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
-    """Find every end of facing sides one of whose two is nearer than a margin [m] after a motion ``(3 nb,)``.
+    """Find facing sides, both ends each, that are near at either end after a motion ``(3 nb,)``.
 
-    None of those left out touches before some block has moved by half the margin.
+    An end is near if its opening is within √5 times the margin [m]. Sides that are left out cannot touch before some
+    block has moved by half the margin.
     """
     e, f = facing_sides(outline, motion, FASTEST_OPENING * margin)
     owner = outline.blocks.owner
@@ -152,18 +153,18 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     near[near] = ~_past_each_other(outline, both.chosen(near), opening[near], motion)
     angle, lean = swing + spin[owner], np.abs(np.tile(tilt + turned, 2))
     near &= _with_the_side_that_faces(outline, both, angle, lean, motion)
-    # One that is there for the sake of another, which it is not now, might be anywhere: as sides turn across each
-    # other it would go from far away to far inside at once.
+    # A distant end is kept only together with a close end of its pair. If that is dropped, so is the distant one: as
+    # sides turn across each other, it would jump from far away to deep inside.
     there = near & close
     return both.chosen(near & np.tile(there[:n] | there[n:], 2))
 
 
 def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array, lean: Array, motion: Array) -> Mask:
-    """Whether corners rest on a side with that of their own two which faces it; sides lean by ``(n,)`` [rad] on it.
+    """Mask of ends whose corner touches with that one of its two sides which faces the other block's side.
 
-    Normals of sides are at angles ``(nv,)`` [rad]. The arc of a corner belongs half to each. A flat corner rests with
-    both, each of which stands for its own area. So does one on which another is about to come to rest, with that of its
-    sides which is to bear it.
+    Normals of sides are at angles ``(nv,)`` [rad], and the sides of each end lean by ``(n,)`` [rad] on each other. Half
+    of a corner's arc belongs to each of its sides. A flat corner touches with both sides, each of which represents its
+    own area. An end is also kept if its other corner is about to come to rest on the side of the first.
     """
     corner, side = resting(outline, contacts, motion)
     v, w, _, _, e, f = contacts.ends.astype(np.int64).T
@@ -171,7 +172,8 @@ def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array
 
     def faces(corner: Indices, side: Indices) -> Mask:
         exterior, own = outline.exterior[corner], outline.side[corner]
-        # From the bisector of the corner to the side, in the same numbers for both sides, or at 45° neither might face.
+        # Angle from the corner's bisector to the side, computed alike for both sides: at 45° rounding might else let
+        # neither face it.
         off = np.mod(angle[own] - exterior / 2 - angle[side], 2 * np.pi) - np.pi
         at_start = (contacts.inwards < 0) == (side != e)
         return np.asarray(np.where(at_start, off <= 0, off > 0) & (lean <= exterior / 2 + SAME_ANGLE))
@@ -183,10 +185,10 @@ def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array
 
 
 def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:
-    """Ends that lie deeper than parts of their blocks reach into each other along the normal of any side, ``(n,)``.
+    """Mask of ends ``(n,)`` deeper than the convex parts of their blocks overlap along the normal of any side.
 
-    Such a block has come by the end of the other one's side, and is below it without having gone through it. A sharp
-    corner there would take that end for the one that it is coming out at (`sharp_opening`).
+    There a block has passed the end of the other block's side, and lies below this side without having penetrated it.
+    A sharp corner would be treated as emerging at this end (`sharp_opening`).
     """
     parts, found, placed = outline.parts, np.zeros(len(contacts), dtype=bool), outline.placed(motion)
     arcs, normals = placed.arcs, placed.arcs[:, 2:]
@@ -195,39 +197,38 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     normal = np.where((side == f)[:, None], normals[f], -normals[e])
     depth = outline.radius[v] + outline.radius[w] - (apart * normal).sum(axis=1)
     along = np.abs(apart[:, 1] * normal[:, 0] - apart[:, 0] * normal[:, 1])
-    # Of corners that are not in yet, those at the end of a side may come in, but for those that are past it by far.
+    # Corners that have not penetrated and lie beyond the end of the side may still come in, except far below the side.
     beside = (opening >= 0) & (along >= outline.straight[side])
-    far = contacts.margin * np.where(outline.radius[v] + outline.radius[w] > 0, 1.0, FASTEST_OPENING)
-    deep = np.where(beside, far, DEEP * outline.margin)
-    asked = np.flatnonzero(depth > deep)
+    # Until the next search blocks move by a margin against each other: 2 · overlap − depth grows by √5 margins at most.
+    deeper = depth - FASTEST_OPENING * contacts.margin
+    asked = np.flatnonzero(np.where(beside, deeper > 0, depth > CHECKED_DEPTH * outline.margin))
     reach = np.empty(len(asked))
     cosine, sine = placed.blocks[:2, outline.blocks.owner[parts.corner]]
     x, y = parts.normal.T
     turned = np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
     pairs = parts.of_side[np.column_stack([e, f])[asked]]
-    reaches(pairs, parts.first, outline.corners(motion)[parts.corner], turned, reach)
-    # Nor may those come in that are beneath a side, and deeper than blocks go before contacts are sought again.
-    inside = (opening < 0) | (~beside & (depth > contacts.margin))
-    found[asked] = reach < np.where(inside, depth / 2, 0.0)[asked]
+    overlaps(pairs, parts.first, outline.corners(motion)[parts.corner], turned, reach)
+    least = np.where(opening < 0, depth, np.where(beside, 0.0, deeper.clip(0)))
+    found[asked] = reach < least[asked] / 2
     return found
 
 
 def jumps(outline: Outline, contacts: Contacts, motion: Array) -> Array:
-    """Opening and slip of contacts after a motion ``(3 nb,)``, ``(2, n)`` [m]."""
+    """Jumps of contacts after a motion ``(3 nb,)``: opening and slip, ``(2, n)`` [m]."""
     opening_and_slip = np.zeros((2, len(contacts)))
     gather_sides(motion, tuple(contacts.geometry(outline)), *opening_and_slip)
     return opening_and_slip
 
 
 def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Indices, Indices]:
-    """Of each end, the corner that is farther in and the side it rests on after a motion ``(3 nb,)``, two ``(n,)``."""
+    """Corner of each end that is farther in, and side that it rests on, after a motion ``(3 nb,)``, two ``(n,)``."""
     corner, side = np.empty((2, len(contacts)), dtype=np.int64)
     resting_ends(outline.placed(motion).arcs, contacts.ends, contacts.inwards, corner, side)
     return corner, side
 
 
 def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indices, Indices]:
-    """Sides e of one block and f of another, of lower number, that face each other and whose boxes are near."""
+    """Pairs of facing sides whose boxes are within a margin [m]: sides e of one block, f of a lower-numbered block."""
     blocks = outline.blocks
     corners, arcs = outline.corners(motion), outline.placed(motion).arcs
     following = corners[blocks.successor]
@@ -246,14 +247,14 @@ def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indice
 
 
 def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array, motion: Array) -> Array:
-    """Area of each end of facing sides, leaning by ``(n,)`` [rad], after a motion ``(3 nb,)``, ``(n,)`` [m²].
+    """Area of each end of facing sides that lean by ``(n,)`` [rad], after a motion ``(3 nb,)``, ``(n,)`` [m²].
 
-    Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
-    at least `LEAST_OVERLAP`, at most half the shorter one, which is what running bond gives them from the start: as a
-    block slides from one onto another, the share of that one grows. What sides run on by counts as theirs where they
-    lean, or a corner in a notch would have nothing to lean on; one that lies flat has the side beside it. A corner that
-    comes round the end of a side onto it, leaning, goes in before contacts are sought again, the farther the more it
-    leans: it has what it overlaps by then.
+    Sides that formed a joint on the undeformed wall have half its area. Sides that meet later have half the area of
+    their present overlap, at least `LEAST_OVERLAP` and at most half the shorter side, as in running bond: while a block
+    slides from one block onto another, the share of the latter grows. Extensions behind re-entrant corners count if the
+    sides lean, or a corner in a notch would have no area; for sides that lie flat, the adjacent side carries there. A
+    leaning corner that comes round the end of a side moves in before the next search, the farther the more it leans:
+    its overlap is at least the one that it reaches by then.
     """
     length, joints = outline.length, outline.joints.length
     corners, after = outline.corners(motion), outline.blocks.successor
@@ -270,7 +271,7 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
 
 
 def position_of(keys: Indices, sought: Indices) -> Indices:
-    """Position in `keys` of each key sought, −1 where it is not among them."""
+    """Position in `keys` of each key in `sought`, −1 for keys that are missing."""
     if not len(keys):
         return np.full(len(sought), -1)
     order = np.argsort(keys)

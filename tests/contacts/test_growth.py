@@ -1,4 +1,4 @@
-"""Contacts that come to overlap by more as blocks slide over each other: what bears the load then."""
+"""Contacts whose area grows as blocks slide over each other: the added springs start without force."""
 
 import math
 
@@ -24,8 +24,8 @@ BREAKS = {"cohesion": 1e4, "tensile_strength": 4e3, "fracture_energy_1": 1.0, "f
 
 @pytest.mark.parametrize("closure", [{}, {"closure": {"growth": 1e6, "stiffest": 2e10}}])
 @pytest.mark.parametrize("share", [1.0, 0.9, 0.25])
-def test_a_contact_that_grows_goes_on_with_its_force(share: float, closure: dict[str, object]) -> None:
-    """Springs of what has come to overlap are neither pressed nor sheared: no force changes, and no energy is made."""
+def test_growing_contact_keeps_its_force(share: float, closure: dict[str, object]) -> None:
+    """Springs of newly overlapping area are neither compressed nor sheared: forces stay and no energy is created."""
     material = {**STIFF, "compressive_strength": 1e8, **closure}
     system = finite_system(courses([[1, 1], [0.5, 1, 0.5]], joint=material))
     run, state = Run(system), State.at_rest(system)
@@ -38,13 +38,13 @@ def test_a_contact_that_grows_goes_on_with_its_force(share: float, closure: dict
     assert after[0] == pytest.approx(share * normal, rel=1e-9, abs=1e-9 * np.abs(normal).max())
     assert after[1] == pytest.approx(share * tangential, rel=1e-9, abs=1e-9 * np.abs(normal).max())
     assert 0 <= lost <= (1 - share) * joint * (1 + 1e-9)
-    if not closure:  # a share s of the springs had s E, and s² E is left in all of them
+    if not closure:  # a share s of the springs stored s E; spread over all of them, s² E is left
         assert lost == pytest.approx(share * (1 - share) * joint, rel=1e-9, abs=1e-9 * joint)
 
 
 @pytest.mark.parametrize("closure", [{}, {"closure": {"growth": 1e6, "stiffest": 2e10}}])
-def test_sides_that_are_found_in_each_other_bear_nothing_yet(closure: dict[str, object]) -> None:
-    """A block that lies on its other side, 1 mm in the ground, all at once: it is borne as it goes on, by k δ."""
+def test_sides_found_overlapping_start_without_force(closure: dict[str, object]) -> None:
+    """A block suddenly lies on its other side, 1 mm inside the ground: only further penetration δ is resisted."""
     material = {**STIFF, "compressive_strength": 1e8, **closure}
     scene = courses([[1]], width=0.4, height=0.2, joint=material)
     system = finite_system(scene)
@@ -57,19 +57,17 @@ def test_sides_that_are_found_in_each_other_bear_nothing_yet(closure: dict[str, 
     assert run.ledger(state).joint == pytest.approx(0.0, abs=1e-12)
     assert run.forces(state)[0] == pytest.approx(0.0, abs=1e-9)
     state.motion[up] -= 1e-9
-    area = scene.thickness * 0.4 / 2  # as sides have that meet later
+    area = scene.thickness * 0.4 / 2  # the area of sides that meet later
     assert -run.forces(state)[0].sum() == pytest.approx(STIFF["normal_stiffness"] * area * 1e-9, rel=1e-3)
 
 
 @pytest.mark.parametrize("material", [BREAKS, {"compressive_strength": 1e9}])
 @pytest.mark.parametrize("friction", [2.0, 0.3])
-def test_a_corner_that_rolls_onto_its_next_side_is_no_stiffer_there(
-    friction: float, material: dict[str, float]
-) -> None:
-    """A trapezoid rolls over its sharper corner at 6 rad/s: no step makes or loses a hundred-thousandth of its energy.
+def test_corner_rolling_onto_its_next_side_gets_no_stiffer(friction: float, material: dict[str, float]) -> None:
+    """A trapezoid rolls over its sharper corner at 6 rad/s: no two steps change its energy by more than 1e-5.
 
-    On the next side the corner is alone, for the other one leans too far. All nine points were at it then in place of
-    the outermost, 36 times as stiff, eight of them without shear.
+    On the next side the corner touches alone, because the other corner leans too far. All nine points, instead of the
+    outermost one, were once placed at it: 36 times as stiff, eight of them without shear.
     """
     half, top, height, turned, spin = 0.2, 0.15, 0.2, -math.radians(30), -6.0
     trapezoid = np.array([[0.0, 0.0], [2 * half, 0.0], [half + top, height], [half - top, height]])
@@ -94,8 +92,8 @@ def test_a_corner_that_rolls_onto_its_next_side_is_no_stiffer_there(
 
 
 @pytest.mark.long
-def test_a_wall_whose_blocks_split_and_slide_over_each_other_loses_no_energy() -> None:
-    """SW.200.1 along the test's path: works and energies add up to 2e-3, as contacts are found anew many times over."""
+def test_energy_balances_for_a_wall_of_splitting_blocks() -> None:
+    """SW.200.1 along the test's path: the energy balance closes to 2e-3 over many contact searches."""
     wall = shipped_walls()["SW.200.1"]
     scene, lost = scene_of(wall, LADDER["rigid-splitting"].features), list[float]()
 

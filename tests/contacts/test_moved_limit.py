@@ -1,4 +1,4 @@
-"""Limit analysis of the shape that a wall has come to: no wall bears more on its way than that shape can."""
+"""Limit analysis of a displaced wall: no wall resists more on its way than its current shape can."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,13 @@ from runningbond.results.mechanism import turned
 from runningbond.scene import Array, Scene
 
 TOUCHING = 2e-4
-"""Gap at which a corner counts as touching a side [m]: more contacts than there are bear no less."""
+"""Gap below which a corner counts as touching a side [m]; superfluous contacts cannot lower the limit load."""
 
 FRICTION = 0.6
 
 
 def rubble(seed: int) -> rb.Wall:
-    """Cells of a crooked grid of four by four, joined by ones, twos and threes."""
+    """Stones made of one to three cells each of a distorted four-by-four grid."""
     random, n = np.random.default_rng(seed), 4
     x, y = np.meshgrid(0.3 * np.arange(n + 1), 0.25 * np.arange(n + 1))
     x[1:-1, 1:-1] += random.uniform(-0.07, 0.07, (n - 1, n - 1))
@@ -37,7 +37,7 @@ def rubble(seed: int) -> rb.Wall:
 
 
 def touches(scene: Scene, corners: Array) -> list[tuple[int, int, Array, Array]]:
-    """Sides that corners of other blocks touch: the side's block, the corner's, where, and the outward normal."""
+    """Corners of blocks touching sides of others: side's block, corner's block, position and outward normal."""
     rings = np.split(corners, scene.blocks.first[1:-1])
     found = []
     for a, ring in enumerate(rings):
@@ -52,14 +52,14 @@ def touches(scene: Scene, corners: Array) -> list[tuple[int, int, Array, Array]]
             along = (from_start * side).sum(axis=2) / length
             to_next = np.array([np.roll(other, shift, axis=0) - other for shift in (-1, 1)])
             to_next /= np.linalg.norm(to_next, axis=2)[:, :, None]
-            outside = (to_next @ normal.T).min(axis=0) > -0.05  # a corner of which no side goes into the block
+            outside = (to_next @ normal.T).min(axis=0) > -0.05  # no side at the corner points into the block
             near = (np.abs(apart) < TOUCHING) & (along > -TOUCHING) & (along < length + TOUCHING) & outside
             found += [(a, b, other[corner], normal[k]) for corner, k in np.argwhere(near)]
     return found
 
 
 def associated_limit(scene: Scene, motion: Array) -> float:
-    """Largest λ that forces at the corners of the moved wall can balance, within Coulomb's cones."""
+    """Largest λ at which corner forces within Coulomb's cones can balance the displaced wall."""
     blocks = scene.blocks
     corners = blocks.vertices + turned(blocks, blocks.owner, blocks.vertices, motion)
     centre = blocks.centroid + motion[:, :2]
@@ -102,10 +102,10 @@ def associated_limit(scene: Scene, motion: Array) -> float:
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [2, 10, 12, 14, 18])
-def test_no_wall_of_rubble_bears_more_than_its_shape_can(seed: int) -> None:
-    """At every state until half of the load is left, within 1 % of the peak, of which speed makes some.
+def test_rubble_wall_does_not_exceed_the_limit_load_of_its_current_shape(seed: int) -> None:
+    """For every state until the load has halved, within 1 % of the peak; the loading speed adds some of this.
 
-    The peak is one of the loads that are certified of the wall as it was built.
+    The peak lies between the certified bounds for the wall as built.
     """
     wall = rubble(seed)
     pushed = wall.run("dem-dynamic", displacements="finite", states=True)

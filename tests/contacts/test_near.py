@@ -1,4 +1,4 @@
-"""What is sought and placed by kernels, beside the same by hand."""
+"""Contact search and placement kernels against direct calculations."""
 
 import math
 
@@ -23,7 +23,7 @@ WALL = panel(wall__height=0.18, wall__length=0.72, joint__mortar=STIFF)
 
 
 def moved(seed: int, far: float, turned: float) -> Array:
-    """A motion of `WALL`, of blocks that are not held."""
+    """Random motion of the free blocks of `WALL`."""
     motion = np.random.default_rng(seed).normal(size=(len(WALL.blocks), 3)) * [far, far, turned]
     motion[WALL.fixed] = 0.0
     return motion.ravel()
@@ -31,7 +31,7 @@ def moved(seed: int, far: float, turned: float) -> Array:
 
 @given(spins=st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=40))
 @settings(max_examples=60)
-def test_cosines_and_sines_are_those_of_the_library_to_rounding(spins: list[float]) -> None:
+def test_turn_kernel_matches_library_cosine_and_sine(spins: list[float]) -> None:
     motion = np.zeros((len(spins), 3))
     motion[:, 2] = spins
     cosine, sine = np.zeros((2, len(spins)))
@@ -42,7 +42,7 @@ def test_cosines_and_sines_are_those_of_the_library_to_rounding(spins: list[floa
 
 @given(seed=st.integers(0, 10**6), far=st.sampled_from([0.0, 2e-3, 0.1]), turned=st.sampled_from([0.0, 0.1, 3.0]))
 @settings(max_examples=40)
-def test_near_sides_are_those_of_all_pairs_of_sides(seed: int, far: float, turned: float) -> None:
+def test_facing_sides_match_a_search_over_all_pairs(seed: int, far: float, turned: float) -> None:
     outline, motion, margin = Outline.of(WALL), moved(seed, far, turned), 0.01
     corners, normal, owner = outline.corners(motion), outline.placed(motion).arcs[:, 2:], outline.blocks.owner
     after = corners[outline.blocks.successor]
@@ -55,7 +55,7 @@ def test_near_sides_are_those_of_all_pairs_of_sides(seed: int, far: float, turne
 
 @given(seed=st.integers(0, 10**6), turned=st.sampled_from([0.0, 0.02, 0.3]))
 @settings(max_examples=40)
-def test_sharp_corners_are_those_of_no_radius(seed: int, turned: float) -> None:
+def test_sharp_kernel_matches_the_rounded_one_at_zero_radius(seed: int, turned: float) -> None:
     outline, motion = Outline.of(WALL), moved(seed, 2e-3, turned)
     contacts = find_contacts(outline, motion, 4 * outline.margin)
     found = []
@@ -67,8 +67,8 @@ def test_sharp_corners_are_those_of_no_radius(seed: int, turned: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_the_frequency_is_a_hundredth_below_that_of_all_closed_contacts_at_most(seed: int) -> None:
-    """Contacts with another stiffness each, the jumps' derivatives taken by differences."""
+def test_frequency_bound_and_estimate_with_all_contacts_closed(seed: int) -> None:
+    """Each contact has its own stiffness; derivatives of the jumps are taken by central differences."""
     outline, motion = Outline.of(WALL), moved(seed, 2e-3, 0.02 * seed)
     contacts = find_contacts(outline, motion, outline.margin)
     sides, n, size = contacts.geometry(outline), len(contacts), len(motion)
@@ -88,8 +88,8 @@ def test_the_frequency_is_a_hundredth_below_that_of_all_closed_contacts_at_most(
     assert largest < bound * (1 + 1e-5)
 
 
-def test_blocks_that_move_as_one_are_not_sought_anew_before_they_have_left_the_ground_by_twice_as_far() -> None:
-    """All go by the same, beside a ground that stays: half of that is what any two come apart by."""
+def test_common_translation_doubles_the_distance_before_the_next_search() -> None:
+    """Only relative motion counts: a common translation u beside fixed ground uses up u / 2, opposite motions u."""
     system = finite_system(WALL)
     assert system.contacts is not None
     update, state = ContactUpdate(system, system.contacts), State.at_rest(system)

@@ -1,4 +1,4 @@
-"""Blocks that come by each other's ends: below a side without having gone through it."""
+"""Blocks that pass each other's ends: they lie below a side without having penetrated it."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dem.finite_system import finite_system
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.search import DEEP, FASTEST_OPENING, find_contacts, jumps
+from runningbond.contacts.search import CHECKED_DEPTH, FASTEST_OPENING, find_contacts, jumps
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import follow
 from runningbond.response.resting import Resting
@@ -24,14 +24,14 @@ STIFF = {"friction": 0.7, "normal_stiffness": 1e8, "shear_stiffness": 1e8}
 
 
 def falling_off() -> Scene:
-    """Two blocks that are thrown off the end of the ground, which is a block's length and a half away."""
+    """Two stacked blocks that are thrown off the end of the ground, one and a half block lengths away."""
     scene = courses([[1], [1]], width=0.5, height=0.5, wall__thickness=0.3, block__density=2000.0, joint=STIFF)
     time, values = pulse("half-sine", GRAVITY, 1.0)
     return replace(scene, load=Load(live=(History(time, values),)))
 
 
-def test_what_falls_past_the_end_of_the_ground_gets_no_energy() -> None:
-    """No contact is deeper than the blocks overlap: stored energy stays far below the weight times the fall."""
+def test_blocks_falling_past_the_end_of_the_ground_gain_no_energy() -> None:
+    """No contact is deeper than the overlap of the blocks: stored energy stays far below weight times fall."""
     scene = falling_off()
     rest = Resting.of(scene, "dem-dynamic", finite_system(scene))
     response = follow(rest, 0.9, after=0.5)
@@ -45,22 +45,22 @@ def test_what_falls_past_the_end_of_the_ground_gets_no_energy() -> None:
 
 
 @pytest.mark.parametrize("scale", [1.5, 2.0, 3.0])
-def test_a_block_that_rides_on_another_does_not_press_on_its_underside(scale: float) -> None:
-    """Two cubes that tip over: the top of the upper one is as far above the lower one's bottom as that takes it for."""
+def test_block_riding_on_another_does_not_press_on_its_underside(scale: float) -> None:
+    """Two stacked cubes tip over; a false contact with the lower one's bottom would upset the energy balance."""
     scene = falling_off()
     rest = Resting.of(scene, "dem-dynamic", finite_system(with_impacts(scene)))
     response = follow(rest, scale)
     assert response.verdict == "collapse"
-    assert response.unaccounted < 0.02  # what impacts lose, and a seventh of it at half the step
+    assert response.unaccounted < 0.02  # the impacts' energy error; a seventh of it at half the time step
 
 
 @given(x=st.floats(0.02, 0.5), y=st.floats(-1.2, 1.0), turned=st.floats(-3.1, 3.1), margin=st.floats(0.02, 0.4))
 @settings(max_examples=60)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
-def test_blocks_that_are_apart_do_not_press_on_each_other(
+def test_separate_blocks_do_not_press_on_each_other(
     inset: float, x: float, y: float, turned: float, margin: float
 ) -> None:
-    """A block wholly to the right of the ground's end, however high or low: no contact is deep, at any margin."""
+    """A block entirely to the right of the ground's end, at any height: no contact is deep, for any search margin."""
     scene = courses([[1]], width=0.5, height=0.5, joint={**STIFF, "inset": inset})
     outline = Outline.of(scene)
     (block,) = np.flatnonzero(scene.wall)
@@ -70,7 +70,7 @@ def test_blocks_that_are_apart_do_not_press_on_each_other(
     motion[block] = end + reach + x - scene.blocks.centroid[block, 0], y, turned
     contacts = find_contacts(outline, motion.ravel(), margin)
     opening, _ = jumps(outline, contacts, motion.ravel())
-    assert opening.min(initial=0.0) > -DEEP * outline.margin
+    assert opening.min(initial=0.0) > -CHECKED_DEPTH * outline.margin
 
 
 @given(
@@ -82,10 +82,10 @@ def test_blocks_that_are_apart_do_not_press_on_each_other(
 @example(at=(-0.405, -0.092), turned=(2.183, -0.8605), step=(-0.958, 0.232, 0.802, 0.643, -0.466, -0.863), margin=0.149)
 @settings(max_examples=200)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
-def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
+def test_blocks_that_stay_apart_get_no_contact_force(
     inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float
 ) -> None:
-    """One anywhere beside, above or below the other, and both moved by half the margin at most since the search."""
+    """One block is anywhere around the other; both move by at most half the margin after the search."""
     scene, outline, motion = two_blocks(inset, at, turned)
     moved = motion.copy()
     way = margin / 2 / (np.sqrt(2) + 1) * np.reshape(step, (2, 3))
@@ -95,7 +95,7 @@ def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
     assume(min(apart) > 1e-3)
     contacts = find_contacts(outline, motion.ravel(), margin)
     opening, _ = jumps(outline, contacts, moved.ravel())
-    assert opening.min(initial=0.0) > -DEEP * outline.margin
+    assert opening.min(initial=0.0) > -CHECKED_DEPTH * outline.margin
 
 
 @given(
@@ -105,10 +105,10 @@ def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
 )
 @settings(max_examples=200)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
-def test_ends_that_are_far_are_there_for_the_sake_of_near_ones_alone(
+def test_far_contact_end_is_kept_only_with_a_near_partner(
     inset: float, at: tuple[float, float], turned: tuple[float, float], margin: float
 ) -> None:
-    """One without a near one went from 0.7 m away to 0.1 m inside at once, as two sides turned across each other."""
+    """An end without a near one once went from 0.7 m outside to 0.1 m inside as two sides rotated past each other."""
     _, outline, motion = two_blocks(inset, at, turned)
     contacts = find_contacts(outline, motion.ravel(), margin)
     opening, _ = np.abs(jumps(outline, contacts, motion.ravel()))
@@ -116,7 +116,7 @@ def test_ends_that_are_far_are_there_for_the_sake_of_near_ones_alone(
 
 
 def two_blocks(inset: float, at: tuple[float, float], turned: tuple[float, float]) -> tuple[Scene, Outline, Array]:
-    """Two turned blocks high above the ground, and their motion ``(nb, 3)``; `at` is from one centroid to the other."""
+    """Two rotated blocks high above the ground, and their motion ``(nb, 3)``; `at` is from centroid to centroid."""
     scene = courses([[1], [1]], width=0.5, height=0.25, joint={**STIFF, "inset": inset})
     one, other = np.flatnonzero(scene.wall)
     motion = np.zeros((len(scene.blocks), 3))

@@ -1,4 +1,4 @@
-"""Blocks that are not convex at finite displacements: corners in notches, interlocked stones, convex parts."""
+"""Non-convex blocks at finite displacements: corners in notches, interlocked stones, convex parts."""
 
 import math
 from dataclasses import replace
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dem.dynamic import dem_dynamic
@@ -55,7 +55,7 @@ def stones(*outlines: Any, friction: float, inset: float = 0.0, live: Any = LATE
 
 @given(stars())
 def test_blocks_are_cut_into_convex_parts_that_share_no_area(star: Array) -> None:
-    """All corners are the block's, and each of its sides is one of a part, as long as it was."""
+    """The parts use only the block's corners, and each side of the block is a full side of one part."""
     blocks = Blocks.from_polygons([np.array(box(60.0, 60.0, 61.0, 61.0)), star])
     parts = ConvexParts.of(blocks, np.zeros_like(blocks.vertices))
     rings = [parts.corner[start:stop] for start, stop in zip(parts.first[:-1], parts.first[1:], strict=True)]
@@ -74,8 +74,8 @@ def turned_by(turn: float, outline: Any) -> Array:
     return np.asarray(corners @ [[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
 
 
-def ways_on(outline: Array) -> RunOn:
-    """How the sides of a block run on, beside another that is of no account."""
+def extensions(outline: Array) -> RunOn:
+    """Extensions of the sides of a block behind its re-entrant corners; the second block plays no role."""
     blocks = Blocks.from_polygons([outline, np.array(box(9, 9, 10, 10), dtype=float)])
     run = blocks.vertices[blocks.successor] - blocks.vertices
     return RunOn.of(blocks, run / np.hypot(*run.T)[:, None])
@@ -85,17 +85,17 @@ CROSS = [(1, 0), (2, 0), (2, 3), (6, 3), (6, 4), (2, 4), (2, 7), (1, 7), (1, 4),
 
 
 @given(st.floats(-3.1, 3.1))
-def test_a_side_runs_on_half_way_to_the_one_in_line_with_it(turn: float) -> None:
-    """Of a cross whose middle is 1 m by 1 m, and not on beneath the arm over there, however it is turned."""
-    ways = ways_on(turned_by(turn, CROSS))
+def test_side_extends_half_way_to_the_side_in_line_with_it(turn: float) -> None:
+    """For a rotated cross whose centre is 1 m by 1 m; sides do not extend beneath the opposite arm."""
+    ways = extensions(turned_by(turn, CROSS))
     assert ways.far == pytest.approx(np.full(8, RUN_ON), rel=1e-9)
 
 
 @given(st.floats(-3.1, 3.1), st.floats(1e-6, 1.0))
-def test_a_side_runs_on_inside_its_block_however_thin_that_is(turn: float, neck: float) -> None:
-    """A notch that leaves but a neck, thinner even than what counts as contact."""
+def test_side_extension_stays_inside_a_thin_block(turn: float, neck: float) -> None:
+    """A notch leaves only a neck, which may be thinner than the contact tolerance."""
     outline = turned_by(turn, [(0, 0), (5, 0), (5, 3), (3, 3), (3, neck), (2, neck), (2, 3), (0, 3)])
-    ways = ways_on(outline)
+    ways = extensions(outline)
     assert len(ways.far) == 4
     inside = shapely.Polygon(outline).buffer(1e-9)
     assert all(inside.covers(shapely.Point(point)) for point in ways.point)
@@ -105,7 +105,7 @@ FORMS = [np.array(outline, dtype=float) for outline in (ELL, PORTAL, TEE)]
 
 
 def beside(inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float]) -> Any:
-    """Two stones that are not convex, turned, one of them at a place from the other's; their outline and motion."""
+    """Scene, outline and motion of two rotated non-convex stones; `at` is from centroid to centroid."""
     scene = stones(FORMS[forms[0]], FORMS[forms[1]] + [3.0, 0.0], friction=0.6, inset=inset)
     one, other = np.flatnonzero(scene.wall)
     motion = np.zeros((len(scene.blocks), 3))
@@ -129,24 +129,24 @@ SOMEWHERE = {
 @given(**SOMEWHERE, margin=st.floats(0.005, 0.2))
 @settings(max_examples=200)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
-def test_stones_that_are_apart_do_not_press_on_each_other(
+def test_separate_stones_do_not_press_on_each_other(
     inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], margin: float
 ) -> None:
-    """Above, beside, or one in the other's notch."""
+    """One stone is above, beside or in the notch of the other."""
     scene, outline, motion = beside(inset, forms, at, turned)
     one, other = np.array(polygons(scene, outline, motion))[scene.wall]
-    if one.distance(other) > 1e-3:
-        contacts = find_contacts(outline, motion.ravel(), margin)
-        opening, _ = jumps(outline, contacts, motion.ravel())
-        assert opening.min(initial=0.0) > -1e-9
+    assume(one.distance(other) > 1e-3)
+    contacts = find_contacts(outline, motion.ravel(), margin)
+    opening, _ = jumps(outline, contacts, motion.ravel())
+    assert opening.min(initial=0.0) > -1e-9
 
 
 @given(**SOMEWHERE, deep=st.floats(1e-7, 1e-5))
 @settings(max_examples=200)
-def test_a_corner_that_goes_into_a_side_bears_as_deep_as_it_is(
+def test_corner_contact_opening_equals_its_penetration(
     forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], deep: float
 ) -> None:
-    """Of stones brought together on the shortest line between them, a corner of one to the middle of a side."""
+    """Stones are moved together along the shortest line between them, a corner of one onto the middle of a side."""
     scene, outline, motion = beside(0.0, forms, at, turned)
     (one, other), numbers = np.array(polygons(scene, outline, motion))[scene.wall], np.flatnonzero(scene.wall)
     start, stop = shapely.get_coordinates(shapely.shortest_line(other, one))
@@ -155,16 +155,16 @@ def test_a_corner_that_goes_into_a_side_bears_as_deep_as_it_is(
         shapely.distance(shapely.MultiPoint(shapely.get_coordinates(each)), shapely.Point(end))
         for each, end in ((other, start), (one, stop))
     ]
-    if apart > 1e-3 and max(away) > 0.01:
-        motion[numbers[1], :2] += (stop - start) * (1 + deep / apart)
-        contacts = find_contacts(outline, motion.ravel(), outline.margin)
-        opening, _ = jumps(outline, contacts, motion.ravel())
-        assert -opening.min() == pytest.approx(deep, abs=1e-10)
+    assume(apart > 1e-3 and max(away) > 0.01)
+    motion[numbers[1], :2] += (stop - start) * (1 + deep / apart)
+    contacts = find_contacts(outline, motion.ravel(), outline.margin)
+    opening, _ = jumps(outline, contacts, motion.ravel())
+    assert -opening.min() == pytest.approx(deep, abs=1e-10)
 
 
 @pytest.mark.parametrize(("model", "slope"), [(dem_dynamic, 30), (dem_dynamic, 45), (dem_dynamic, 60), (fem, 45)])
-def test_a_block_with_its_toe_in_a_notch_topples_as_it_would_on_rough_ground(model: Any, slope: float) -> None:
-    """λ = tan(α − θ): floor and slope of the notch hold a corner that friction alone would let slide at λ = 0.1."""
+def test_block_with_its_toe_in_a_notch_topples_as_on_rough_ground(model: Any, slope: float) -> None:
+    """λ = tan(α − θ): floor and slope of the notch hold a corner that would slide at λ = 0.1 by friction alone."""
     width, height = 0.06, 0.24
     away = width + 0.1 / math.tan(math.radians(slope))
     notched = np.array([(-1, -0.3), (2, -0.3), (2, 0.1), (away, 0.1), (width, 0.0), (-1, 0)])
@@ -175,19 +175,19 @@ def test_a_block_with_its_toe_in_a_notch_topples_as_it_would_on_rough_ground(mod
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_portal_topples_about_the_toe_of_its_leg(model: Any) -> None:
-    """λ = tan(α − θ), tan α being the arm of its centroid over the height of that."""
+def test_portal_topples_about_the_toe_of_its_leg(model: Any) -> None:
+    """λ = tan(α − θ), where tan α is the horizontal arm of the centroid over its height."""
     side = 0.2
     scene = stones(side * np.array(PORTAL), friction=2.0)
     outcome = model(scene, 0.005, displacements="finite")
     x, y = scene.blocks.centroid[scene.wall][0]
-    turned = np.arcsin(outcome.curve[:, 0] / side)  # the upper corner above the toe goes by as much
+    turned = np.arcsin(outcome.curve[:, 0] / side)  # displacement of the upper corner above the toe
     follows(outcome, np.tan(math.atan2(side - x, y) - turned))
 
 
 @pytest.mark.parametrize("turn", [0.01, 0.05, 0.2])
-def test_stones_on_a_crooked_bed_bear_on_the_area_of_their_joints(turn: float) -> None:
-    """Sides beside those that lie on each other add no more than what a corner may come to lean on."""
+def test_stones_on_a_crooked_bed_have_the_contact_area_of_their_joints(turn: float) -> None:
+    """Sides next to those in contact add no more than the area onto which a corner may lean."""
     x = np.linspace(-0.2, 0.2, 9)
     bed = np.column_stack([x, 0.5 + 0.025 * turn * (1 - np.arange(9) % 2)])
     scene = stones([(-0.2, 0), (0.2, 0), *bed[::-1]], [*bed, (0.2, 1), (-0.2, 1)], friction=1.5)
@@ -200,8 +200,8 @@ def test_stones_on_a_crooked_bed_bear_on_the_area_of_their_joints(turn: float) -
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_stone_that_holds_on_by_its_hook_breaks_at_the_strength_of_its_stem(model: Any) -> None:
-    """A tee whose arms are behind two jaws, pulled at its stem, which breaks across all of its section at once."""
+def test_hooked_stone_breaks_at_the_strength_of_its_stem(model: Any) -> None:
+    """A tee with its arms behind two jaws is pulled at its stem, which breaks across its whole section at once."""
     tee = [(0, 0), (0.1, 0), (0.1, 0.2), (0.9, 0.2), (0.9, 0.4), (0.1, 0.4), (0.1, 0.6), (0, 0.6)]
     jaws = box(0.1, -0.2, 2.0, 0.2), box(0.1, 0.4, 0.3, 0.8)
     strength, friction, height, width = 1e5, 0.01, 0.2, 0.1
@@ -224,7 +224,7 @@ def test_a_stone_that_holds_on_by_its_hook_breaks_at_the_strength_of_its_stem(mo
 
 
 def interlocked(cells: list[str], **keys: Any) -> Scene:
-    """Stones of cells of 0.3 by 0.2 m, the rows from above, each letter a stone."""
+    """Stones made of cells of 0.3 by 0.2 m; rows from the top, one letter per stone."""
     places = [
         (letter, column, len(cells) - row) for row, line in enumerate(cells) for column, letter in enumerate(line)
     ]
@@ -234,12 +234,12 @@ def interlocked(cells: list[str], **keys: Any) -> Scene:
     return stones(*[np.array(ring.coords)[:-1] for ring in rings], **keys)
 
 
-# Ells and a tee that hold on to one another.
+# Interlocked ells and a tee.
 WALL = ["eff", "eef", "cdd", "ccd", "aab"]
 
 
 @pytest.mark.long
-def test_interlocked_stones_peak_at_the_lowest_load_that_limit_analysis_certifies() -> None:
+def test_interlocked_stones_peak_at_the_lowest_certified_load() -> None:
     scene = interlocked(WALL, friction=0.6)
     lowest, outcome = limit_nonassociated(scene), dem_dynamic(scene, 0.01, displacements="finite")
     assert lowest.lower is not None
@@ -247,8 +247,8 @@ def test_interlocked_stones_peak_at_the_lowest_load_that_limit_analysis_certifie
 
 
 @pytest.mark.parametrize(("scale", "verdict"), [(2.0, "stands"), (3.0, "collapse")])
-def test_interlocked_stones_that_are_shaken_never_lie_in_one_another(scale: float, verdict: str) -> None:
-    """The ledger closes to a hundredth, and stones overlap by the give of their joints alone."""
+def test_shaken_interlocked_stones_do_not_overlap(scale: float, verdict: str) -> None:
+    """The energy balance closes to 1 %, and stones overlap only by the compression of their joints."""
     time, values = pulse("half-sine", 0.8 * 9.81, 0.5)
     scene = interlocked(WALL, friction=1.5, live=History(time, values))
     response = follow(Resting.of(scene, "dem-dynamic", finite_system(scene)), scale, after=0.5)

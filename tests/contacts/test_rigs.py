@@ -1,4 +1,4 @@
-"""Walls that a rig leads through finite displacements, against exact solutions."""
+"""Walls driven by a test rig through finite displacements, against exact solutions."""
 
 import math
 from dataclasses import replace
@@ -25,7 +25,7 @@ WALL = {"block_width": 0.4, "block_height": 0.6, "thickness": 0.2}
 
 
 def rig(courses: int = 1, length: float = 0.4, height: float = 0.6, **changes: Any) -> Scene:
-    """Blocks as long as the wall, one on another, under a beam of 0.1 m and 20 kN that is pushed at the blocks' top."""
+    """Stacked blocks as long as the wall under a beam of 0.1 m and 20 kN that is pushed at the top of the blocks."""
     block = height / courses
     tables: dict[str, Any] = {
         "wall": {"block_width": length, "block_height": block, "thickness": 0.2, "courses": [[1]] * courses},
@@ -59,12 +59,12 @@ def force_at(outcome: Outcome, displacement: float) -> float:
 
 
 @pytest.mark.parametrize(("line", "at"), [("moving", 0.6), ("fixed", 0.9), *at_length(("fixed", 0.6))])
-def test_a_rocking_block_takes_what_its_force_allows(line: str, at: float) -> None:
-    """It turns by θ about its toe, at half its length b from the middle, until the driven point has gone by d.
+def test_rocking_block_resists_by_the_lever_of_its_force(line: str, at: float) -> None:
+    """The block (half length b) turns by θ about its toe until the driven point has moved by d.
 
-    d = at sin θ + b (1 − cos θ); a force N that moves along has the lever of its centre, one that stays has b, and
-    the drive that of its point above the toe, at cos θ + b sin θ: exact at any rotation; the joints' stiffness makes
-    blocks turn about points inside by N / (2 k thickness b) at most, here by 1e-5 of b.
+    d = at sin θ + b (1 − cos θ). A force N that moves with the beam has the lever of its centre, one on a fixed line
+    has b, and the drive that of its point above the toe, at cos θ + b sin θ: exact at any rotation. Compliant joints
+    shift the rotation centre inwards by at most N / (2 k thickness b), here 1e-5 of b.
     """
     b, top, n = 0.2, 0.65, 2e4
     outcome = finite(rig(beam__force_line=line, beam__drive={"displacement": [0.05, 0], "at": at}))
@@ -78,10 +78,11 @@ def test_a_rocking_block_takes_what_its_force_allows(line: str, at: float) -> No
         )
 
 
-def test_dead_loads_at_points_and_lines_turn_with_their_block() -> None:
-    """A block that rocks about its toe under a beam, a load at its side and one along a part of its top.
+def test_dead_point_and_line_loads_move_with_their_block() -> None:
+    """A block rocks about its toe under a beam, a point load at its side and a line load on part of its top.
 
-    By virtual work, exact at any rotation: what the dead forces lose as the corner rises, over the driven point's way.
+    By virtual work, exact at any rotation: work of the dead forces as they rise over the displacement of the driven
+    point.
     """
     b, h, drive, beam, side, line = 0.25, 1.0, 0.95, 2e4, 5e3, 1.5e4
     scene = rig(
@@ -107,10 +108,10 @@ def test_dead_loads_at_points_and_lines_turn_with_their_block() -> None:
 
 
 @pytest.mark.parametrize("to", [[-1.0, 0.9], [0.25, -0.02]])
-def test_ties_of_a_block_that_rocks_far_pull_along_the_line_of_their_ends(to: list[float]) -> None:
-    """To an anchor and to the ground: the drive by virtual work, exact at any rotation; the reactions of the ground.
+def test_ties_of_a_rocking_block_pull_along_their_current_direction(to: list[float]) -> None:
+    """To an anchor and to the ground: drive by virtual work, exact at any rotation, and the ground reactions.
 
-    What an anchor bears the ground does not.
+    The ground does not carry the force of a tie to an anchor.
     """
     b, h, drive, beam, at = 0.25, 1.0, 0.95, 2e4, [0.0, 0.9]
     tie = {"from": at, "to": to, "area": 1e-5, "young": 2e9, "yield": 1.5e3}
@@ -133,16 +134,16 @@ def test_ties_of_a_block_that_rocks_far_pull_along_the_line_of_their_ends(to: li
         moment = place[0] * pull[1] - place[1] * pull[0] - beam * top[0]
         exact = moment / (drive * math.cos(theta) + b * math.sin(theta))
         assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
-        # What balances beam, drive and, of a tie to the ground, nothing else.
+        # Balances beam and drive, and the tie if it goes to an anchor.
         on_ground = np.array([-exact, beam]) - (pull if anchored else 0.0)
         for name, force in zip(("ground horizontal [N]", "ground vertical [N]"), on_ground, strict=True):
             assert np.interp(d, outcome.curve[:, 0], column(outcome, name)) == pytest.approx(force, abs=0.01 * beam)
         known = np.interp(d, outcome.curve[:, 0], column(outcome, "tie 0 [N]"))
-        assert known == pytest.approx(math.hypot(*pull), abs=2.0)  # joints give way by a twentieth of a millimetre
+        assert known == pytest.approx(math.hypot(*pull), abs=2.0)  # joints compress by 0.05 mm
 
 
-def test_a_block_between_level_plates_takes_twice_as_much() -> None:
-    """Its force goes from corner to corner: V = N x / y with their distances x = l cos θ − h sin θ and y."""
+def test_block_between_level_plates_resists_twice_as_much() -> None:
+    """The force runs from corner to corner: V = N x / y with their distances x = l cos θ − h sin θ and y."""
     length, height, n = 0.3, 0.6, 2e4
     outcome = finite(rig(length=length, height=height, beam__condition="level"))
     for d in (0.015, 0.03):
@@ -161,8 +162,8 @@ def test_a_block_between_level_plates_takes_twice_as_much() -> None:
     assert horizontal[late] == pytest.approx(-outcome.curve[late, 1], abs=2e-2 * n)
 
 
-def test_small_drifts_are_those_of_small_displacements() -> None:
-    """A wall of three courses to 0.1 mm: V to 1e-3, joint forces, reactions and works to 5e-3 of the largest."""
+def test_small_drifts_agree_with_small_displacements() -> None:
+    """A wall of three courses to 0.1 mm: V to 1e-3; joint forces, reactions and works to 5e-3 of the largest."""
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "joint__friction": 0.6}
     scene = rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [1e-4, 0], "at": 0.3})
     far, near = finite(scene), dem_dynamic(scene)
@@ -180,7 +181,7 @@ def test_small_drifts_are_those_of_small_displacements() -> None:
 
 @pytest.mark.parametrize(("joint", "arm"), [({}, 4), ({"compressive_strength": 1e12}, 12)])
 def test_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str, float], arm: int) -> None:
-    """A block on springs, before it lifts off: d = 2 V / (k A) + V h² / (k t L³ / 12), L³ / 4 with but its ends."""
+    """A block before uplift: d = 2 V / (k A) + V h² / (k t L³ / 12), with L³ / 4 for springs at the ends only."""
     changes: dict[str, Any] = {f"joint__{name}": value for name, value in joint.items()}
     outcome = finite(rig(**changes, beam__drive={"displacement": [1e-5, 0], "at": 0.6}))
     force, length, height = float(outcome.curve[-1, 1]), 0.4, 0.6
@@ -191,8 +192,8 @@ def test_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str, floa
 
 @pytest.mark.parametrize("displacements", ["small", "finite"])
 @pytest.mark.parametrize("side", [1, -1])
-def test_an_outcome_has_where_joints_were_crushed(side: int, displacements: Any) -> None:
-    """A block that rocks crushes the toe it is pushed to, at the base and, as its beam is loose, nowhere else."""
+def test_outcome_locates_crushed_joint_ends(side: int, displacements: Any) -> None:
+    """A rocking block crushes only the toe it is pushed to, at the base and nowhere else, because its beam is loose."""
     scene = rig(joint__compressive_strength=1e6, beam__drive={"displacement": [0.02 * side, 0], "at": 0.6})
     outcome = dem_dynamic(scene, displacements=displacements)
     places = scene.joints.ends[outcome.crushed > 1e-4]
@@ -201,10 +202,10 @@ def test_an_outcome_has_where_joints_were_crushed(side: int, displacements: Any)
     assert len(dem_dynamic(rig(), displacements=displacements).crushed) == 0
 
 
-def test_a_toe_that_crushes_shortens_the_lever() -> None:
-    """The toe's points carry their area's strength, the last of them the rest of N = f_m A / 10.
+def test_crushing_toe_shortens_the_lever() -> None:
+    """The toe's points carry the strength of their area, the last of them the rest of N = f_m A / 10.
 
-    Their resultant lies at x from the toe, so V = N (b − x) / h, under a line that is fixed.
+    Their resultant acts at x from the toe, hence V = N (b − x) / h for a force on a fixed line.
     """
     joint: dict[str, Any] = {"joint__compressive_strength": 2.5e6, "joint__cap_shear": 0.0}
     scene = rig(**joint, beam__force_line="fixed", beam__drive={"displacement": [0.02, 0], "at": 0.6})
@@ -218,8 +219,8 @@ def test_a_toe_that_crushes_shortens_the_lever() -> None:
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
 @pytest.mark.parametrize("strength", [None, 1e12])
-def test_frames_of_a_rig_show_its_joints(model: str, strength: float | None) -> None:
-    """The last frame's tractions bear what lies on the ground, and the joint that has opened is as wide as it looks."""
+def test_frames_of_a_rig_have_its_joint_tractions(model: str, strength: float | None) -> None:
+    """The last frame's tractions carry the load on the ground, and the joint opening matches the rotation."""
     changes: dict[str, Any] = {"block": {"density": 1000.0, "young": 1e12}}
     if strength:
         changes["joint__compressive_strength"] = strength
@@ -237,10 +238,10 @@ def test_frames_of_a_rig_show_its_joints(model: str, strength: float | None) -> 
 @pytest.mark.parametrize(
     ("model", "strength"), [("dem-dynamic", None), ("fem", None), *at_length(("dem-dynamic", 1e12))]
 )
-def test_tractions_of_frames_balance_a_wall_that_has_turned(model: str, strength: float | None) -> None:
-    """A block that leans by 5° on its toe is held up by the ground, and held back by what the drive takes.
+def test_frame_tractions_balance_a_rotated_wall(model: str, strength: float | None) -> None:
+    """A block leans by 5° on its toe: the ground reacts with its weight and the force of the drive.
 
-    The side that bears there is the ground's, whose normal has not turned.
+    The contact lies on the ground's side, whose normal has not rotated.
     """
     joint: dict[str, Any] = {"joint__compressive_strength": strength} if strength else {}
     drive = {"displacement": [0.05, 0], "at": 0.6}
@@ -255,8 +256,8 @@ def test_tractions_of_frames_balance_a_wall_that_has_turned(model: str, strength
 
 
 @pytest.mark.parametrize("displacements", ["small", "finite"])
-def test_a_beam_whose_wall_has_been_crushed_falls_and_is_followed_no_further(displacements: Any) -> None:
-    """0.98 of what the joint bears in pressure and a push: it is crushed to nothing, and nothing bears the beam."""
+def test_run_ends_when_the_beam_falls_on_a_crushed_wall(displacements: Any) -> None:
+    """The joint is loaded to 0.98 of its compressive strength and pushed: it crushes completely and the beam drops."""
     joint: dict[str, Any] = {"joint__compressive_strength": 1e6, "joint__compressive_fracture_energy": 500.0}
     scene = rig(
         height=0.25,
@@ -274,8 +275,8 @@ def test_a_beam_whose_wall_has_been_crushed_falls_and_is_followed_no_further(dis
     assert -10.0 < column(outcome, "beam uplift [m]")[-1] < -0.1
 
 
-def test_a_beam_that_has_turned_is_pushed_where_its_point_is_now() -> None:
-    """By 1 N, with a moment about the origin that is the height of the point."""
+def test_rotated_beam_is_pushed_at_the_current_position_of_its_point() -> None:
+    """A push of 1 N has a moment about the origin equal to the current height of the point."""
     scene = rig(beam__drive={"displacement": [0.03, 0], "at": 0.6})
     run, lifted = Run(finite_system(scene)), 1.0
     assert scene.beam is not None
@@ -287,7 +288,7 @@ def test_a_beam_that_has_turned_is_pushed_where_its_point_is_now() -> None:
     assert push == pytest.approx([1.0, 0.0, -height], rel=1e-9, abs=1e-9)
 
 
-def test_pushed_the_other_way_a_wall_does_the_same() -> None:
+def test_mirrored_push_gives_the_mirrored_response() -> None:
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "inner_joint": GLUE}
     outcomes = [
         finite(rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [sign * 0.003, 0], "at": 0.3}))
@@ -298,8 +299,8 @@ def test_pushed_the_other_way_a_wall_does_the_same() -> None:
     assert column(left, "beam rotation [rad]")[-1] == pytest.approx(-column(right, "beam rotation [rad]")[-1], rel=1e-2)
 
 
-def test_the_loop_of_a_block_that_rocks_closes() -> None:
-    """There and back, and the other way: the same force each time, and no more work than 2 % of what went in."""
+def test_rocking_loop_closes() -> None:
+    """Forwards, back and to the other side: the same force each time, and net work below 2 % of the largest."""
     outcome = finite(rig(beam__drive={"displacement": [[0.0, 0.01, -0.01, 0.0]], "at": 0.6}))
     moved, force = outcome.curve.T
     there, back = np.argmax(moved), np.argmin(moved)
@@ -327,7 +328,7 @@ GLUE = {
 
 
 def split(displacement: float, **joint: Any) -> tuple[Run, State, float]:
-    """A block whose right half is drawn away from its left one, both held; and the largest force [N]."""
+    """A block whose right half is drawn away from its left one, both motions prescribed; and the largest force [N]."""
     scene = rig(**{f"joint__{name}": value for name, value in joint.items()}, inner_joint=GLUE)
     system = finite_system(scene)
     motion = np.zeros_like(system.mass)
@@ -341,10 +342,10 @@ def split(displacement: float, **joint: Any) -> tuple[Run, State, float]:
 
 
 @pytest.mark.parametrize("joint", [{}, {"compressive_strength": 1e12}])
-def test_a_block_that_splits_spends_its_fracture_energy_and_is_dry_afterwards(joint: dict[str, Any]) -> None:
-    """G_I times the area to 1e-6, through searches for contacts that hand the damage on; the most is f_t A."""
+def test_splitting_block_spends_its_fracture_energy_and_is_dry_afterwards(joint: dict[str, Any]) -> None:
+    """Spends G_I times the area to 1e-6 over contact searches that transfer the damage; the peak force is f_t A."""
     area = 0.6 * 0.2
-    run, state, most = split(0.0095, **joint)  # of the 2 G_I / f_t = 5 mm it needs
+    run, state, most = split(0.0095, **joint)  # complete separation needs 2 G_I / f_t = 5 mm
     search = run.system.contacts
     assert search is not None
     assert contacts_of(state) is not search.undeformed
@@ -359,8 +360,8 @@ def test_a_block_that_splits_spends_its_fracture_energy_and_is_dry_afterwards(jo
     assert run.ledger(state).friction == pytest.approx(GLUE["fracture_energy_1"] * area, rel=1e-6)
 
 
-def test_a_joint_of_another_material_slides_by_its_own_friction_and_breaks() -> None:
-    """The base alone is weak: V = c A + μ N at most and μ N afterwards, and it spends G_II A besides friction."""
+def test_weak_base_joint_uses_its_own_cohesion_and_friction() -> None:
+    """Only the base is weak: peak V = c A + μ N, then μ N, and it spends G_II A in addition to friction."""
     weak = {
         "friction": 0.3,
         "cohesion": 5e4,
@@ -386,8 +387,8 @@ def test_a_joint_of_another_material_slides_by_its_own_friction_and_breaks() -> 
     assert spent[end] == pytest.approx(0.3 * n * slip + weak["fracture_energy_2"] * area, rel=5e-3)
 
 
-def test_what_leaves_its_joint_slides_on_the_default_material() -> None:
-    """A block that is taken from its own half of the ground to a neighbour's top keeps to the default friction."""
+def test_block_that_leaves_its_joint_slides_with_the_default_friction() -> None:
+    """A block moves from its own half of the ground to the top of a neighbour and keeps the default friction."""
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]]}
     scene = rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [0.03, 0], "at": 0.3}, joint__friction=0.3)
     assert finite(scene).curve[-1, 1] == pytest.approx(0.3 * 2e4, rel=0.01)
@@ -399,7 +400,11 @@ def test_what_leaves_its_joint_slides_on_the_default_material() -> None:
         ({}, "big", 'model dem-dynamic: displacements = .big.: must be one of "small", "finite"'),
         ({}, "finit", 'did you mean "finite"'),
         ({}, 2, "must be one of"),
-        ({"beam__drive": {"force": [1, 0]}}, "finite", "^beam: is not taken at finite displacements where live loads"),
+        (
+            {"beam__drive": {"force": [1, 0]}},
+            "finite",
+            "^beam: is not supported at finite displacements where live loads",
+        ),
         ({"joint__cohesion": 1e4}, "finite", "joint.cohesion = 10000"),
         ({"joint__cohesion": 1e4, "joint__fracture_energy_1": 10.0}, "finite", "joint.cohesion"),
         ({"inner_joint": {k: v for k, v in GLUE.items() if "energy" not in k}}, "finite", "inner_joint.cohesion"),
@@ -409,7 +414,9 @@ def test_what_leaves_its_joint_slides_on_the_default_material() -> None:
         ({"wall": {**WALL, "courses": [[1, 1]]}, "support__kind": "corners"}, "finite", "support.kind"),
     ],
 )
-def test_what_is_not_followed_so_far_is_refused(changes: dict[str, Any], displacements: Any, message: str) -> None:
+def test_unsupported_finite_displacement_cases_are_refused(
+    changes: dict[str, Any], displacements: Any, message: str
+) -> None:
     with pytest.raises(SceneError, match=message):
         run_model("dem-dynamic", rig(**changes), displacements=displacements)
 
@@ -427,6 +434,6 @@ def test_what_is_not_followed_so_far_is_refused(changes: dict[str, Any], displac
         ({"beam__forceline": "fixed"}, 'did you mean "force_line"'),
     ],
 )
-def test_lines_that_are_none_are_refused(changes: dict[str, Any], message: str) -> None:
+def test_invalid_force_lines_are_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match=message):
         rig(**changes)

@@ -1,4 +1,4 @@
-"""Corners that come round the end of a side, onto which they slide."""
+"""Corners that slide around the end of another block's side."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,13 @@ from tests.scene.test_any_outline import box
 from .test_reentrant import stones
 
 TURNS = np.tan([0.28, 0.19, 0.27])
-"""Slopes of the side beyond the end, of the stone's side that slides on it, and of its side round the corner."""
+"""Slopes of the side beyond the end, of the sliding stone's side on it, and of the stone's side around the corner."""
 
 AWAY = 5.0
 
 
 def pair(mirrored: bool, steep: float = 1.0) -> tuple[Scene, Outline]:
-    """A stone that hangs from a roof, and another one, on the floor, whose upper side ends at (0, 0)."""
+    """A stone hanging from a roof, and another one on the floor whose upper side ends at (0, 0)."""
     sense, (falls, rises, flank) = -1 if mirrored else 1, steep * TURNS
     edge = np.array([(-1, -1), (0.8, -1), (0.5, -0.5 * falls), (0, 0), (-1, 0)])
     stone = np.array([(0, 0), (0.8, 0.8 * flank), (0.8, 1.5), (-0.8, 1.5), (-0.8, 0.8 * rises)])
@@ -28,15 +28,15 @@ def pair(mirrored: bool, steep: float = 1.0) -> tuple[Scene, Outline]:
 
 
 def moved(scene: Scene, mirrored: bool, along: float, up: float) -> Array:
-    """A motion that takes the stone's corner to the end of the other one's side, and on outwards and up."""
+    """A motion that takes the stone's corner to the end of the other one's side, and then outwards and up."""
     motion = np.zeros((len(scene.blocks), 3))
     motion[1, :2] = (-1 if mirrored else 1) * (along - AWAY), up
     return motion.ravel()
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_corner_that_slides_over_another_is_known_on_the_side_behind_it(mirrored: bool) -> None:
-    """Until it has passed, the other one rests on its side: no contact touches that was left out in a small motion."""
+def test_corner_sliding_past_another_is_found_on_the_side_behind_it(mirrored: bool) -> None:
+    """A small motion brings no contact that the search had left out, while one stone rests on the other's side."""
     scene, outline = pair(mirrored)
     outside, deep = 0.1 * outline.margin, 1e-5
     before = moved(scene, mirrored, outside, -outside * TURNS[1])
@@ -49,8 +49,8 @@ def test_a_corner_that_slides_over_another_is_known_on_the_side_behind_it(mirror
 
 @pytest.mark.parametrize("steep", [1.0, 0.2])
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_corner_has_an_area_to_rest_on_where_it_comes_to_lie(mirrored: bool, steep: float) -> None:
-    """Before it comes there; or it would go in against nothing, and be thrown back once contacts are sought again."""
+def test_corner_has_contact_area_before_it_arrives(mirrored: bool, steep: float) -> None:
+    """Otherwise it would penetrate without resistance and be thrown back at the next contact search."""
     scene, outline = pair(mirrored, steep)
     outside = 0.1 * outline.margin
     before, after = (moved(scene, mirrored, along, 0.0) for along in (outside, -outside))

@@ -1,4 +1,4 @@
-"""Supports that move so far that walls on them change their shape, against exact solutions."""
+"""Supports that move so far that the walls on them change their shape, against exact solutions."""
 
 import math
 from dataclasses import replace
@@ -29,7 +29,7 @@ RISE, SKEW = 0.4, 0.15
 
 
 def on_two_grounds(blocks: list[Array], grounds: list[Array], by: tuple[float, float], **joint: Any) -> Scene:
-    """Blocks on two pieces of ground, of which the right one moves."""
+    """Blocks on two pieces of ground; the right one moves."""
     left = float(grounds[1][:, 0].min())
     given: dict[str, Any] = {"friction": 0.8, "elasticity": Stiffness(3e10, 3e10)} | joint
     return build_scene(
@@ -44,7 +44,7 @@ def on_two_grounds(blocks: list[Array], grounds: list[Array], by: tuple[float, f
 
 
 def arch(spread: float, **joint: Any) -> Scene:
-    """Two blocks of 1 m between skewed abutments, of which the right one goes away."""
+    """Two blocks of 1 m between skewed abutments; the right abutment moves away."""
     left = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, RISE], [-SKEW, RISE]])
     abutment = np.array([[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0], [-SKEW, RISE], [-1.0, RISE]])
     across = [np.column_stack([2.0 - outline[::-1, 0], outline[::-1, 1]]) for outline in (left, abutment)]
@@ -52,10 +52,10 @@ def arch(spread: float, **joint: Any) -> Scene:
 
 
 def thrust(spread: float, centroid: Array) -> float:
-    """Share of the weight with which two blocks press on a support that has gone so far.
+    """Thrust of the two blocks, as a share of their weight, after the support has moved by `spread`.
 
-    Each turns about its lower corner at the abutment, and their upper corners bear on each other: with half the span
-    b + s / 2 between them the rise is what the diagonal leaves, and H = W (arm of its middle) / rise.
+    Each block turns about its lower corner at the abutment, and their upper corners press on each other: with half the
+    span b + s / 2 the rise follows from the diagonal, and H = W (arm of its middle) / rise.
     """
     half = 1.0 + spread / 2
     rise = math.sqrt(1.0 + RISE**2 - half**2)
@@ -70,8 +70,8 @@ def far(scene: Scene, model: Any = dem_dynamic) -> Outcome:
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_an_arch_on_a_spreading_support_thrusts_as_its_hinges_have_moved(model: Any) -> None:
-    """From .577 of its weight to .72 at a fortieth of the span: to 2e-3; the grounds bear the weight, half each."""
+def test_arch_on_a_spreading_support_has_the_thrust_of_its_moved_hinges(model: Any) -> None:
+    """From .577 of its weight to .72 at a fortieth of the span, to 2e-3; each ground carries half the weight."""
     scene = arch(0.05)
     outcome = far(scene, model)
     for moved, share in outcome.curve:
@@ -83,16 +83,16 @@ def test_an_arch_on_a_spreading_support_thrusts_as_its_hinges_have_moved(model: 
         assert known[f"{ground} horizontal [N]"] == pytest.approx(sense * weight * outcome.curve[-1, 1], rel=1e-3)
 
 
-def test_an_arch_falls_once_its_hinges_lie_in_a_line() -> None:
-    """The diagonal of a block is as long as half the span at a spread of 0.154 m; corners are rounded by 2 mm of it.
+def test_arch_falls_once_its_hinges_are_collinear() -> None:
+    """A block's diagonal equals half the span at a spread of 0.154 m; corners are rounded by 2 mm.
 
-    At small displacements it never falls, and thrusts as it did.
+    At small displacements it never falls, and its thrust stays constant.
     """
     line = 2 * (math.hypot(1.0, RISE) - 1.0)
     outcome = far(arch(0.2, inset=0.002))
     assert "the wall falls beyond" in outcome.message
     assert 0.85 * line < outcome.curve[-1, 0] < line
-    left, right = outcome.motion[:2]  # of the last rest: hinges open and nothing else moves
+    left, right = outcome.motion[:2]  # at the last rest: only hinges open
     assert left[2] < -0.3 < 0.3 < right[2]
     assert left[1] == pytest.approx(right[1], rel=1e-2)
     assert outcome.path[:, outcome.path_columns.index("at rest")].all()
@@ -101,16 +101,16 @@ def test_an_arch_falls_once_its_hinges_lie_in_a_line() -> None:
 
 
 @pytest.mark.parametrize(("spread", "falls"), [(0.09, False), (0.25, True)])
-def test_a_lintel_falls_from_a_support_that_goes_away_from_under_it(spread: float, falls: bool) -> None:
-    """It lies on 0.1 m at either end, and goes along with one of them until the other has slid from under it."""
+def test_lintel_falls_when_a_support_slides_from_under_it(spread: float, falls: bool) -> None:
+    """It rests on 0.1 m at either end and moves along with one support until the other has slid out."""
     grounds = [rectangle(-0.5, -0.3, 0.6, 0.3), rectangle(0.9, -0.3, 0.6, 0.3)]
     outcome = far(on_two_grounds([rectangle(0.0, 0.0, 1.0, 0.2)], grounds, (spread, 0.0)))
     end = outcome.curve[-1, 0]
     assert 0.08 < end < 0.22 if falls else end == pytest.approx(spread)
 
 
-def test_a_beam_on_three_supports_comes_free_of_one_that_sinks() -> None:
-    """A block across a pit, on its edges: its middle support sinks from under it, and bears nothing."""
+def test_beam_on_three_supports_leaves_the_one_that_sinks() -> None:
+    """The middle support sinks from under a block that spans a pit, and carries nothing."""
     grounds = [rectangle(-0.5, -0.5, 0.6, 0.5), rectangle(0.4, -0.5, 0.2, 0.5), rectangle(0.9, -0.5, 0.6, 0.5)]
     blocks = [rectangle(0.0, 0.0, 1.0, 0.2)]
     scene = build_scene(
@@ -128,7 +128,7 @@ def test_a_beam_on_three_supports_comes_free_of_one_that_sinks() -> None:
 
 
 def leaning(width: float, height: float, **joint: Any) -> Scene:
-    """A block on ground that turns by 10° about a point below and beside it, and another one on ground that stays."""
+    """A block on ground that turns by 10° about a point below and beside it, and another block on fixed ground."""
     blocks = [rectangle(0.0, 0.0, 0.3, 0.1), rectangle(1.0, 0.0, width, height)]
     grounds = [rectangle(-0.2, -0.3, 0.7, 0.3), rectangle(0.8, -0.3, 0.7, 0.3)]
     turns = Settlement(box=((0.79, -2.0), (5.0, 2.0)), rotation_angle=-10.0, about=(0.9, -0.2))
@@ -137,10 +137,10 @@ def leaning(width: float, height: float, **joint: Any) -> Scene:
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
 @pytest.mark.parametrize(("width", "friction", "tangent"), [(0.06, 0.8, 0.12), (0.4, 0.1, 0.1)])
-def test_a_block_on_ground_that_turns_leans_until_it_topples_or_slides(
+def test_block_on_tilting_ground_topples_or_slides_at_the_exact_angle(
     model: Any, width: float, friction: float, tangent: float
 ) -> None:
-    """At tan θ = b / h, or tan φ: its last rest, of some on the way, is the last one below that."""
+    """At tan θ = b / h, or tan φ: its last rest is the last load stage below that angle."""
     outcome = model(leaning(width, 0.5, friction=friction), 0.05, displacements="finite")
     assert outcome.status == "collapse", outcome.message
     assert "the wall falls beyond" in outcome.message
@@ -151,8 +151,8 @@ def test_a_block_on_ground_that_turns_leans_until_it_topples_or_slides(
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_block_goes_round_with_ground_that_turns(model: Any) -> None:
-    """Its centroid about the point that the ground turns about, by 10°: straight on it would come 0.5 % farther."""
+def test_block_rotates_with_its_ground(model: Any) -> None:
+    """Its centroid moves on an arc of 10° about the ground's centre; along a line it would go 0.5 % farther."""
     scene = leaning(0.2, 0.3)
     seen: list[Array] = []
 
@@ -168,8 +168,8 @@ def test_a_block_goes_round_with_ground_that_turns(model: Any) -> None:
 
 @pytest.mark.parametrize("order", [1, -1])
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_anchors_stay_where_they_are_as_supports_go(model: Any, order: int) -> None:
-    """A block rides along on the ground that goes, by a tie to an anchor 2 m above: it stretches by √(4 + d²) − 2 m."""
+def test_anchors_stay_fixed_while_supports_move(model: Any, order: int) -> None:
+    """A block on the moving ground is tied to an anchor 2 m above: the tie stretches by √(4 + d²) − 2 m."""
     by, stiffness = (0.05 * order, 0.0), 1e9 * 1e-6 / 2.0
     grounds = [rectangle(-0.5, -0.3, 0.9, 0.3), rectangle(0.6, -0.3, 0.9, 0.3)][::order]
     beside = [rectangle(-0.2, 0.0, 0.5, 0.3), rectangle(0.7, 0.0, 0.5, 0.3)][::order]
@@ -189,8 +189,8 @@ def test_anchors_stay_where_they_are_as_supports_go(model: Any, order: int) -> N
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-def test_a_support_that_goes_far_is_said_to_be_beyond_small_displacements(model: str) -> None:
-    """50 mm of an arch of 0.4 m are, 5 mm are not; and who can follow it says how."""
+def test_large_support_motion_is_reported_as_beyond_small_displacements(model: str) -> None:
+    """50 mm of an arch of 0.4 m are, 5 mm are not; a model with finite displacements says how to use them."""
     far_off, near = (run_model(model, arch(spread)).message for spread in (0.05, 0.005))
     said = "the support goes by 12 % of the wall's smaller side, beyond small displacements"
     assert said in far_off
