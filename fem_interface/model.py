@@ -1,8 +1,8 @@
-"""Model ``fem``: deformable blocks in triangles with interfaces between them, in the manner of the paper's FEM/DEM.
+"""Model ``fem``: deformable blocks of triangles with interfaces between them, after the paper's FEM/DEM model.
 
-The paper's second model (Secs. 4–5): blocks of stiff constant-strain triangles, zero-thickness joint elements with
-Coulomb's law between them, explicit central differences. Blocks are taken in modal coordinates, in which nothing is
-lost and stiff deformations can be slowed down one by one.
+This is the paper's second model (Secs. 4–5): blocks of stiff constant-strain triangles, zero-thickness joint elements
+with Coulomb's law, explicit central differences. Blocks are described in modal coordinates, which with all modes are
+equivalent to nodal ones, and in which stiff deformations can be slowed down one by one.
 """
 
 import time
@@ -50,8 +50,8 @@ from .operators import PointsOn
 from .piece_masses import with_heavier_pieces
 from .system import system_of
 
-SOFTER = 0.15
-"""Part by which inner joints may make blocks softer before it is said."""
+REPORTED_COMPLIANCE = 0.15
+"""Compliance of inner joints, relative to that of the triangles, above which the outcome's message reports it."""
 
 
 def fem(
@@ -73,40 +73,40 @@ def fem(
     distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its deformable blocks; where its ground moves, as `critical_scale` finds it.
+    """Collapse of a scene from the motion of its deformable blocks; with ground motion, by `critical_scale`.
 
     Parameters
     ----------
     scene
-        The scene; its joints need a stiffness, its blocks one too unless `modes` is 3.
+        The scene; its joints need a stiffness, and so do its blocks unless `modes` is 3.
     cells
-        Cells in half a block along the course, and in a block's height.
+        Number of cells in half a block along the course, and in a block's height.
     modes
-        Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
+        Number of modes of each block (`ModeCount`): by default 10, or all if blocks may crack.
     rule
-        Quadrature rule of the joints; `wall_rule` where none is given.
+        Quadrature rule of the joints; by default that of `wall_rule`.
     points
-        Whether the rule is laid on each joint element or on each joint whole, as for rigid blocks.
+        Whether the rule is applied to each joint element, or to each whole joint as for rigid blocks.
     cracks
-        Whether blocks stay whole or may crack between all of their triangles, at the scene's `inner_joint`.
+        Whether blocks stay whole, or may crack between all of their triangles with the scene's `inner_joint`.
     loads
-        Whether loads proportional to mass act as it does, or at inner nodes as in the paper.
+        Whether loads proportional to mass are consistent with the mass, or act at inner nodes as in the paper.
     mass_scaling
         Make deformable modes heavy enough not to limit the time step.
     energies
-        Where the joints' fracture energies come from; without any, joints are perfectly plastic.
+        Source of the joints' fracture energies; without fracture energies joints are perfectly plastic.
     displacements
-        Whether a wall is followed through finite displacements, as `dem.dynamic.dem_dynamic` follows it.
-        Contacts are then at nodes and, where joints soften, crush or close, at points between them; `rule`,
-        `points`, `loads` and `energies` are not taken, and blocks crack on their axes.
+        Whether finite displacements are taken into account, as in `dem.dynamic.dem_dynamic`.
+        Contacts are then at nodes and, if joints soften, crush or close, at points between them; `rule`,
+        `points`, `cracks`, `loads` and `energies` cannot be set, and blocks crack along their axes only.
     tolerance, collapse, first_step, budget, distance, observe
         As in `collapse_by_steps`.
 
     Returns
     -------
     Outcome
-        As of `collapse_by_steps`. `force` lists the points joint by joint or, where the mesh has others than a joint's
-        own, the forces at its ends that have the same resultants; `motion` is the blocks' rigid part.
+        As of `collapse_by_steps`. `force` lists the points joint by joint; if the mesh's points are not those of whole
+        joints, it lists forces with the same resultants at the joints' ends. `motion` is the blocks' rigid motion.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -118,7 +118,7 @@ def fem(
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
             if value != only:
-                raise SceneError(f"model fem: {name}", "is not taken at finite displacements; leave it out", value)
+                raise SceneError(f"model fem: {name}", "is not supported at finite displacements; leave it out", value)
     with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
         if finite:
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
@@ -158,9 +158,9 @@ def fem(
 
 
 def at_ends(scene: Scene, points: JointPoints, force: Array) -> Array:
-    """Forces ``(2 nj, 2)`` [N] at the ends of a scene's joints that have the resultants of those at points ``(np, 2)``.
+    """Forces ``(2 nj, 2)`` [N] at the ends of a scene's joints with the resultants of forces at points ``(np, 2)``.
 
-    Points that are on no joint of the scene, between triangles of a block, are left out.
+    Points on no joint of the scene, which lie between triangles of a block, are left out.
     """
     ends = wall_points(scene)
     order = np.lexsort(((ends.position * ends.tangent).sum(axis=1), ends.joint)).reshape(-1, 2)
@@ -176,7 +176,7 @@ def at_ends(scene: Scene, points: JointPoints, force: Array) -> Array:
 
 
 def run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
-    """Blocks with inertia that nobody asks after: pieces of them where a beam leads the wall, else all of them."""
+    """Run with fictitious inertia for longer steps; with prescribed displacements only pieces of blocks get it."""
     if wall.scene.is_led:
         return Run(with_heavier_pieces(wall, system))
     coupled = with_coupled_masses(wall, system)
@@ -186,22 +186,23 @@ def run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
 
 
 def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
-    """What a message says of how the blocks were taken."""
+    """Note for the outcome's message on scaled masses and on the compliance of inner joints."""
     deformed = wall.stiffness > 0
     factor = largest_scaling(system.mass[deformed], wall.mass[deformed])
     scaled = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
-    note = joined(inertia_note(system.inertia_scaling), scaled)
-    note += ", those of soft blocks coupled across joints" if len(system.coupling.freedom) else ""
-    note += ", pieces of blocks heavier against one another" if len(system.clusters.cluster) else ""
-    if cracks == "blocks" and (more := added_compliance(wall.pieces)) > SOFTER:
-        note += f"; inner joints make blocks up to {more:.0%} softer: a larger inner_joint.normal_stiffness would not"
-    return note
+    coupled = "masses of soft blocks coupled across joints" if len(system.coupling.freedom) else ""
+    heavier = "pieces of blocks heavier against one another" if len(system.clusters.cluster) else ""
+    masses = ", ".join(filter(None, (inertia_note(system.inertia_scaling), scaled, coupled, heavier)))
+    softer = ""
+    if cracks == "blocks" and (more := added_compliance(wall.pieces)) > REPORTED_COMPLIANCE:
+        softer = f"inner joints make blocks up to {more:.0%} softer: a larger inner_joint.normal_stiffness would not"
+    return joined(masses, softer)
 
 
 def fem_response(
     scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
 ) -> Response:
-    """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
+    """Response of a scene's deformable blocks to λ times the motion of its ground; see `follow`."""
     resting = Resting.of(scene, "fem", finite_system(node_outline(with_impacts(scene), cells, modes)))
     return follow(resting, scale, **settings)
 

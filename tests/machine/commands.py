@@ -1,4 +1,4 @@
-"""Commands that write, as a user calls them, and the whole work that they leave."""
+"""Commands that write files, as a user calls them, and the complete results that they leave."""
 
 import hashlib
 from collections.abc import Callable
@@ -23,13 +23,13 @@ class Command:
     arguments
         Its arguments, for a folder to work in.
     begun
-        Whether in that folder something has been written and more is to come.
+        Whether the command has written something to that folder and is not finished.
     found
-        What whole work is in the folder, named piece by piece, with what tells one piece from another.
+        Complete results in the folder, by name, with what distinguishes one from another.
     damage
-        Damages what is in the folder.
+        Damages the results in the folder.
     is_alone
-        Whether another one in the same folder is refused meanwhile.
+        Whether a second command in the same folder is refused while it runs.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Command:
 
 
 def _outcomes(folder: Path) -> dict[str, object]:
-    """Outcomes of a folder that can be trusted and were not broken off, without the time they took."""
+    """Complete and undamaged outcomes in a folder, without their computing times."""
     found: dict[str, object] = {}
     for record in folder.rglob("outcome.json"):
         try:
@@ -59,7 +59,7 @@ def _mesh_file(folder: Path) -> dict[str, object]:
 
 
 def pictures(folder: Path) -> dict[str, object]:
-    """Pictures that end as their format does."""
+    """Pictures in a folder whose files are complete."""
     ends = {".png": b"IEND\xaeB`\x82", ".gif": b";"}
     return {
         path.name: "whole"
@@ -73,7 +73,7 @@ def _halve(path: Path) -> None:
 
 
 def _damage_outcomes(folder: Path) -> None:
-    """Cut the arrays of one outcome off, and the record of the others."""
+    """Truncate the arrays of one outcome, and the records of the others."""
     records = sorted(folder.rglob("outcome.json"))
     _halve(next(records[0].parent.glob("*.npz")))
     for record in records[1:]:

@@ -1,4 +1,4 @@
-"""Faults of the disk: it is full before a command is done, or takes nothing at all."""
+"""Disk faults: the disk becomes full before a command is done, or is read-only."""
 
 import json
 import os
@@ -14,40 +14,40 @@ from runningbond.commands.terminal import BAD_INPUT, DONE
 from .commands import COMMANDS
 from .trial import NOT_TRIED, REDONE, REFUSED, Scratch, Trial, call, judged
 
-ROOM = 16 << 10
-"""Bytes that a full disk still takes, so that it is full in the middle [B]."""
+FREE_BYTES = 16 << 10
+"""Bytes that are left on a full disk, so that it fills up in the middle of the work [B]."""
 
-DISK = 8 << 20
+DISK_BYTES = 8 << 20
 """Size of the disk [B]."""
 
 
 class Disk:
-    """A folder as a small disk of its own; without one, as near to that as limits and permissions come.
+    """A folder as a small separate disk; if it cannot be mounted, limits and permissions take its place.
 
     Parameters
     ----------
     folder
         The folder.
     mounts
-        Whether this process may mount what nobody else sees.
+        Whether this process may mount file systems in a namespace of its own.
     """
 
     def __init__(self, folder: Path, mounts: bool) -> None:
         self.folder = folder
-        mount = ["mount", "-t", "tmpfs", "-o", f"size={DISK}", "tmpfs", str(folder)]
+        mount = ["mount", "-t", "tmpfs", "-o", f"size={DISK_BYTES}", "tmpfs", str(folder)]
         self.mounted = mounts and subprocess.run(mount, capture_output=True, check=False).returncode == 0
         self._unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
 
     def fill(self) -> None:
-        """Leave `ROOM` bytes; where nothing is mounted, let no file grow larger than a fourth of them."""
+        """Leave `FREE_BYTES` bytes; without a mount, limit each file to a fourth of them."""
         if not self.mounted:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM // 4, self._unlimited[1]))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (FREE_BYTES // 4, self._unlimited[1]))
             return
         free = shutil.disk_usage(self.folder).free
-        (self.folder / "ballast").write_bytes(bytes(free - ROOM))
+        (self.folder / "ballast").write_bytes(bytes(free - FREE_BYTES))
 
     def lock(self) -> None:
-        """Take nothing any more; where nothing is mounted, of those who are not the superuser."""
+        """Make the folder read-only; without a mount, this has no effect for the superuser."""
         if self.mounted:
             self._remount("ro")
         else:
@@ -55,7 +55,7 @@ class Disk:
                 path.chmod(0o500)
 
     def mend(self) -> None:
-        """Take files again."""
+        """Make the folder writable again."""
         resource.setrlimit(resource.RLIMIT_FSIZE, self._unlimited)
         if self.mounted:
             self._remount("rw")
@@ -68,7 +68,7 @@ class Disk:
 
 
 def fill(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
-    """Call a command on a disk that is full before it is done, then on one that has room again."""
+    """Call a command on a disk that becomes full, then again with free space."""
     scratch.fresh(folder)
     disk.fill()
     code, message = call(scratch.command.arguments(folder))
@@ -78,7 +78,7 @@ def fill(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
 
 
 def lock(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
-    """Call a command in a folder that takes nothing, then in the same folder when it does."""
+    """Call a command in a read-only folder, then again when the folder is writable."""
     scratch.fresh(folder)
     before = sorted(folder.rglob("*"))
     disk.lock()
@@ -90,7 +90,7 @@ def lock(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
 
 
 def disk_trials(home: Path, names: Sequence[str], mounts: bool) -> list[Trial]:
-    """Give commands that have been prepared full and read-only disks."""
+    """Run prepared commands on full and on read-only disks."""
     trials: list[Trial] = []
     for scratch in (Scratch(command, home) for command in COMMANDS if command.name in names):
         for fault, happen in (("full disk", fill), ("read-only folder", lock)):
@@ -105,7 +105,7 @@ def disk_trials(home: Path, names: Sequence[str], mounts: bool) -> list[Trial]:
 
 
 def disk_trials_apart(home: Path, names: Sequence[str]) -> list[Trial]:
-    """`disk_trials` in a process of its own, which may mount things if the system knows a way."""
+    """Run `disk_trials` in a separate process, which may mount file systems if the machine allows it."""
     apart: Sequence[str] = ()
     for way in (["unshare", "--mount"], ["unshare", "--user", "--map-root-user", "--mount"]):
         if shutil.which(way[0]) and subprocess.run([*way, "true"], capture_output=True, check=False).returncode == 0:

@@ -15,12 +15,12 @@ from .commands import RENDER, Command
 from .trial import REDONE, REFUSED, WHOLE, Scratch, Trial, call, judged, message_of
 
 PATIENCE = 120.0
-"""Time in which a command must have begun to write, or end [s]."""
+"""Time within which a command must have started to write, or end [s]."""
 
 
 @contextmanager
 def started(command: Command, folder: Path) -> Iterator["subprocess.Popen[str]"]:
-    """Start a command in processes of its own, and wait until it is in the middle of its work."""
+    """Start a command in its own process group, and wait until it is in the middle of its work."""
     line = [sys.executable, "-m", "runningbond", *command.arguments(folder)]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
     try:
@@ -34,7 +34,7 @@ def started(command: Command, folder: Path) -> Iterator["subprocess.Popen[str]"]
 
 
 def interrupt(scratch: Scratch, folder: Path, how: signal.Signals, fault: str) -> Trial:
-    """Send a signal to a command in the middle, and call it again."""
+    """Send a signal to a running command, and call the command again."""
     with started(scratch.command, scratch.fresh(folder)) as process:
         os.killpg(process.pid, how)
         printed, said = process.communicate(timeout=PATIENCE)
@@ -45,7 +45,7 @@ def interrupt(scratch: Scratch, folder: Path, how: signal.Signals, fault: str) -
 
 
 def at_once(scratch: Scratch, folder: Path) -> Trial:
-    """Call a command in the folder where another one is in the middle."""
+    """Call a command in a folder where another one is running."""
     with started(scratch.command, scratch.fresh(folder)) as process:
         code, message = call(scratch.command.arguments(folder))
         _, said = process.communicate(timeout=PATIENCE)
@@ -57,12 +57,12 @@ def at_once(scratch: Scratch, folder: Path) -> Trial:
 
 
 def damage(scratch: Scratch, folder: Path) -> Trial:
-    """Damage what a command has left or needs, and call it again."""
+    """Damage the results or inputs of a command, and call it again."""
     scratch.fresh(folder)
     call(scratch.command.arguments(folder))
     scratch.command.damage(folder)
     code, message = call(scratch.command.arguments(folder))
-    if scratch.command is RENDER:  # it makes pictures of what others have computed
+    if scratch.command is RENDER:  # it renders results of other commands
         return judged(scratch.trial("damaged result", folder, code, message, REFUSED), code == BAD_INPUT)
     trial = scratch.trial("damaged result", folder, code, message, REDONE)
     return judged(trial, code == DONE and scratch.command.found(folder) == scratch.expected)

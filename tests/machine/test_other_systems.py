@@ -1,4 +1,4 @@
-"""What Windows does not have, taken away here: locks of folders, masks of signals, limits of time. None ran this."""
+"""What Windows lacks is removed here: folder locks, signal masks, time limits. Not run on Windows itself."""
 
 import ast
 import json
@@ -33,13 +33,13 @@ del signal.pthread_sigmask, signal.SIGXCPU, os.O_DIRECTORY
 
 
 def without(script: str) -> "subprocess.CompletedProcess[str]":
-    """Run a script where none of that is there."""
+    """Run a script on a Python without these features."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)])}
     command = [sys.executable, "-c", WITHOUT + script]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
-def test_runs_and_campaigns_in_processes_need_none_of_it(tmp_path: Path) -> None:
+def test_runs_and_campaigns_work_without_posix_features(tmp_path: Path) -> None:
     script = f"""
 import runningbond as rb
 from runningbond.commands.command_line import command
@@ -75,7 +75,7 @@ def is_free(folder: Path) -> bool:
 
 
 @pytest.mark.usefixtures("no_fcntl")
-def test_a_file_holds_a_folder_where_the_system_does_not(tmp_path: Path) -> None:
+def test_lock_file_locks_a_folder_without_fcntl(tmp_path: Path) -> None:
     with locked(tmp_path):
         assert not is_free(tmp_path)
     assert is_free(tmp_path)
@@ -87,7 +87,7 @@ def test_a_file_holds_a_folder_where_the_system_does_not(tmp_path: Path) -> None
 
 
 @pytest.mark.usefixtures("no_fcntl")
-def test_outcomes_are_kept_and_found_without_fcntl(tmp_path: Path) -> None:
+def test_outcomes_are_saved_and_loaded_without_fcntl(tmp_path: Path) -> None:
     for seconds in (1.0, 2.0):
         save_outcome(Outcome("wall", "limit", "undecided", seconds=seconds), tmp_path, "key")
     assert load_outcome(tmp_path)[0].seconds == 2.0
@@ -97,7 +97,7 @@ def test_outcomes_are_kept_and_found_without_fcntl(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_fcntl")
-def test_a_folder_that_takes_no_lock_is_read_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_folder_that_cannot_be_locked_is_still_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: Any, **__: Any) -> None:
         raise PermissionError(13, "Permission denied")
 
@@ -106,28 +106,28 @@ def test_a_folder_that_takes_no_lock_is_read_all_the_same(tmp_path: Path, monkey
     assert load_outcome(tmp_path)[1] == "key"
 
 
-def test_a_process_that_works_too_long_ends_itself_without_limits_of_the_system() -> None:
+def test_process_over_its_time_ends_itself_without_system_limits() -> None:
     script = "from runningbond.studies import apart\napart.LONGEST = 1\napart.limit_time()\nwhile True: pass"
     assert without(script).returncode == 152
     assert apart.ENDED != 152
 
 
-HOUSE = [
+SOURCES = [
     path
     for room in ("runningbond", "dem", "fem_interface", "homog", "meshing", "docs", "examples", "tools")
     for path in (ROOT / room).rglob("*.py")
 ]
 POSIX = {"fcntl", "grp", "pty", "pwd", "resource", "syslog", "termios", "tty"}
-HELD_BACK = {"O_DIRECTORY", "SIGXCPU", "pthread_sigmask"}
-"""What is asked for behind a guard, which the tests above take away."""
+GUARDED = {"O_DIRECTORY", "SIGXCPU", "pthread_sigmask"}
+"""Names used only behind a guard; the tests above remove them."""
 
 
-def test_nothing_is_asked_for_that_only_posix_has() -> None:
+def test_no_unguarded_use_of_posix_features() -> None:
     """Modules outside a ``try``, names of `os` and `signal` that Windows lacks; text is read and written as UTF-8."""
     lacking = {name for name in dir(os) if name in {"fork", "geteuid", "getuid", "killpg", "mkfifo", "setsid", "uname"}}
     lacking |= {"SIGALRM", "SIGHUP", "SIGKILL", "SIGPIPE", "SIGQUIT", "SIGUSR1", "SIGUSR2", "alarm", "setitimer"}
     found = []
-    for path in HOUSE:
+    for path in SOURCES:
         tree = ast.parse(path.read_text(encoding="utf-8"))
         guarded = {id(line) for node in ast.walk(tree) if isinstance(node, ast.Try) for line in node.body}
         for node in ast.walk(tree):
@@ -139,7 +139,7 @@ def test_nothing_is_asked_for_that_only_posix_has() -> None:
                 and isinstance(node.value, ast.Name)
                 and node.value.id in ("os", "signal")
             ):
-                asked = {node.attr} & (lacking - HELD_BACK)
+                asked = {node.attr} & (lacking - GUARDED)
             elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
                 text = node.func.attr in ("read_text", "write_text") and "/proc/" not in ast.unparse(node.func)
                 if text and "encoding" not in {word.arg for word in node.keywords}:
@@ -148,11 +148,11 @@ def test_nothing_is_asked_for_that_only_posix_has() -> None:
     assert not found
 
 
-def test_names_of_shipped_files_are_taken_by_every_system() -> None:
-    """No character that Windows refuses, no name of one of its devices, and none that differs from another by case."""
+def test_shipped_file_names_are_valid_on_every_system() -> None:
+    """No character that Windows refuses, no device name, and no two names that differ only by case."""
     kept = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
     names = [name for name in kept.stdout.decode().split("\0") if name] or [
-        path.relative_to(ROOT).as_posix() for path in HOUSE
+        path.relative_to(ROOT).as_posix() for path in SOURCES
     ]
     assert not [name for name in names if re.search(r'[<>:"|?*\\\x00-\x1f]|[. ](/|$)', name)]
     devices = re.compile(r"(?i)(^|/)(con|prn|aux|nul|com\d|lpt\d)(\.[^/]*)?(/|$)")
@@ -160,8 +160,8 @@ def test_names_of_shipped_files_are_taken_by_every_system() -> None:
     assert len({name.lower() for name in names}) == len(names)
 
 
-def test_the_first_load_needs_neither_a_compiler_nor_a_mesher_nor_vtk() -> None:
-    """What a browser's Python does not have: `limit` of the wall that ``new`` writes, with all of it taken away."""
+def test_first_load_needs_no_compiler_mesher_or_vtk() -> None:
+    """A browser's Python lacks them: `limit` of the wall that ``new`` writes, with all of them removed."""
     absent = ("numba", "llvmlite", "gmsh", "skfem", "meshio", "pyvista", "vtkmodules", "matplotlib", "psutil")
     script = f"""
 import sys

@@ -1,4 +1,4 @@
-"""What a fault did to a command: trials of it, each in a folder of its own."""
+"""Trials of the effect of a fault on a command, each in its own folder."""
 
 import io
 import re
@@ -16,29 +16,29 @@ from runningbond.commands.terminal import DONE
 from .commands import Command, pictures
 
 WHOLE, REDONE, REFUSED, LOST, NOT_TRIED = "whole", "redone", "refused", "lost", "not tried"
-"""What may come of a fault: the command does its work all the same; what it had finished is whole, and called again it
-does the rest; it says in one line why not, and nothing is half written; none of these; or it needs a disk of its own
-here, and may mount none."""
+"""Effects of a fault: the command still completes; finished work is intact and a second call completes the rest; one
+line says why the command refuses, and no file is half written; none of these; or the trial needs a separate disk and
+cannot mount one."""
 
 PROGRESS = re.compile(r", \d+ of \d+, \d+ s$")
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What a fault did to a command.
+    """The effect of a fault on a command.
 
     Parameters
     ----------
     command, fault
-        Which.
+        Their names.
     kept
-        Pieces of work that were whole afterwards, of those that an undisturbed command leaves.
+        Number of results that were complete afterwards.
     pieces
-        Number of the latter.
+        Number of results of an undisturbed command.
     message
-        What the command said.
+        Message of the command.
     code
-        What it left with; minus the signal that killed it.
+        Its exit code; minus the signal that killed it.
     verdict
         One of `WHOLE`, `REDONE`, `REFUSED`, `LOST` and `NOT_TRIED`.
     """
@@ -61,7 +61,7 @@ class Scratch:
     command
         The command.
     home
-        Where its folders are: one with what it needs, one in which it has been called undisturbed.
+        Place of its folders: one with its inputs, one with the results of an undisturbed call.
     """
 
     command: Command
@@ -69,21 +69,21 @@ class Scratch:
 
     @property
     def prepared(self) -> Path:
-        """The folder with what it needs."""
+        """The folder with the inputs."""
         return self.home / f"{self.command.name}-prepared"
 
     @property
     def done(self) -> Path:
-        """The folder in which it has been called undisturbed."""
+        """The folder with the results of an undisturbed call."""
         return self.home / f"{self.command.name}-done"
 
     @cached_property
     def expected(self) -> dict[str, object]:
-        """What it leaves undisturbed."""
+        """Results of an undisturbed call."""
         return self.command.found(self.done)
 
     def prepare(self, needed: Path | None = None) -> None:
-        """Call it undisturbed, in a folder with what it needs."""
+        """Call the command undisturbed, in a folder with its inputs."""
         self.prepared.mkdir()
         if needed is not None:
             shutil.copytree(needed, self.prepared, dirs_exist_ok=True)
@@ -96,7 +96,7 @@ class Scratch:
         return Path(shutil.copytree(self.prepared, folder))
 
     def trial(self, fault: str, folder: Path, code: int, message: str, verdict: str) -> Trial:
-        """Judge what is in a folder after a fault; it is lost if it is not what an undisturbed command leaves."""
+        """Judge a folder after a fault: the work is lost if results differ from those of an undisturbed call."""
         found = self.command.found(folder)
         whole = found.items() <= self.expected.items()
         message = message.replace(str(folder), "OUT")
@@ -106,7 +106,7 @@ class Scratch:
         )
 
     def does_it_again(self, folder: Path) -> bool:
-        """Call the command once more, and see whether everything is there."""
+        """Call the command once more, and return whether all results are there."""
         code, _ = call(self.command.arguments(folder))
         return code == DONE and self.command.found(folder) == self.expected
 
@@ -117,7 +117,7 @@ def call(arguments: Sequence[str]) -> tuple[int, str]:
     Returns
     -------
     code, message
-        What it leaves with, and what it says last on standard error.
+        Its exit code, and its message on standard error.
     """
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     said = io.StringIO()
@@ -131,9 +131,9 @@ def call(arguments: Sequence[str]) -> tuple[int, str]:
 
 
 def message_of(said: str, printed: str = "") -> str:
-    """What a command says on standard error; where that is nothing, the last line but one that it prints.
+    """Message of a command on standard error; if there is none, the last line but one of its output.
 
-    Lines of progress are left out, and that there are no pictures from this machine.
+    Lines of progress are left out, and the note that this machine draws no pictures.
     """
     lines = [line for line in said.splitlines() if line.strip() and not PROGRESS.search(line)]
     lines = [line for line in lines if "no pictures" not in line]
@@ -141,5 +141,5 @@ def message_of(said: str, printed: str = "") -> str:
 
 
 def judged(trial: Trial, right: bool) -> Trial:
-    """The trial, as lost if what was asked for is not right."""
+    """The trial, marked as lost if the requirement does not hold."""
     return trial if right else replace(trial, verdict=LOST)

@@ -1,4 +1,4 @@
-"""Which model a scene needs: the ladder of models, climbed until the answer is as narrow as asked."""
+"""Which model a scene needs: models are run in the order of a ladder until the bracket meets the tolerance."""
 
 from .climb import TOLERANCE, Advice, AdviceRung, advise
 

@@ -1,7 +1,7 @@
-"""Which model a scene needs: the ladder of models, climbed until the answer is as narrow as asked.
+"""Which model a scene needs: models are run in the order of a ladder until the bracket meets the tolerance.
 
-Each rung is climbed for a reason, and left out for one. `Kind` says what its answer is worth, docs/advise.md what ends
-the climb and what its bracket means.
+Every model that is tried is a rung, with the reason for its choice. `Kind` defines the meaning of its multiplier;
+docs/advise.md describes what ends the climb and what the final bracket means.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,55 +21,55 @@ from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step
 
-TOLERANCE = 0.05  # relative width of the bracket that is asked for where nothing else is
-FARTHER = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
+TOLERANCE = 0.05  # default of the requested relative width of the bracket
+PUSH_FACTOR = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
 
 
 @dataclass(frozen=True)
 class AdviceRung:
     """One rung: the outcome of a model, and what follows from it."""
 
-    model: str  # its name
-    outcome: Outcome | None  # None where the model does not apply to such a scene
-    next: Step  # which model follows, and why; or why this is enough
-    next_cost: Estimate | None  # None on the last rung, and where no law says
-    seconds: float  # since the foot of the ladder
+    model: str  # name of the model
+    outcome: Outcome | None  # None if the model does not apply to the scene
+    next: Step  # the model that follows, and why; or why no further model is needed
+    next_cost: Estimate | None  # None on the last rung, and if there is no cost law for the next step
+    seconds: float  # time used by all rungs so far
 
     def __str__(self) -> str:
-        """The result, the cost so far, what follows from it, and the next rung with its cost, in a line."""
+        """One line with the result, the time so far, what follows, and the next model with its expected cost."""
         result = "–"
         if self.outcome is not None:
             result = bracket(self.outcome) if self.outcome.status == "collapse" else self.outcome.status
         line = f"{self.model:20} {result:19} {self.seconds:7.2f} s  {self.next.reason}"
         if self.next.name is None:
             return line
-        return f"{line} → {self.next.name}, {self.next_cost or 'at a cost that no law gives'}"
+        return f"{line} → {self.next.name}, {self.next_cost or 'at unknown cost'}"
 
 
 @dataclass(repr=False)
 class Advice:
-    """A climb: what is asked of a scene, what is known of it, and the rungs so far."""
+    """A climb of the ladder: the knowledge about a scene, and the rungs so far."""
 
     known: Knowledge
     rungs: list[AdviceRung] = field(default_factory=list)
 
     def __repr__(self) -> str:
-        """What ``runningbond advise`` prints: a line a rung, then the answer."""
+        """Text that ``runningbond advise`` prints: one line per rung, then the answer."""
         return "\n".join([self.title, *map(str, self.rungs), *([self.in_words(self.outcome())] if self.rungs else [])])
 
     @property
     def title(self) -> str:
-        """Of which wall, and how narrow a bracket is asked for."""
+        """Title of the scene, and the requested relative width of the bracket."""
         return f"{self.known.scene.title}: λ to {100 * self.known.tolerance:g} %"
 
     def in_words(self, outcome: Outcome) -> str:
-        """The answer, by which model, what its bracket means, and how far such answers were from tests."""
+        """The answer, the model it is from, the meaning of its bracket, and the model's measured error in tests."""
         result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
         said = outcome.message, self.against_experiment()[1]
         return "\n  ".join([f"{result} by {outcome.model}, {outcome.seconds:.2f} s", *filter(None, said)])
 
     def climb(self) -> Iterator[AdviceRung]:
-        """Climb rung by rung; each is given when it is done, before the next is begun."""
+        """Climb the ladder; yields each rung when it is done, before the next model is run."""
         step = Step(ladder("estimate")[0], "the trend at no cost")
         while step.model is not None:
             outcome: Outcome | None = None
@@ -89,7 +89,7 @@ class Advice:
             step = following
 
     def outcome(self) -> Outcome:
-        """The answer: the bracket of the last rung that gave one, and in the message what it means."""
+        """The answer: the bracket of the last rung that has one, and its meaning in the message."""
         known, last = self.known, self.rungs[-1]
         answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
         message = known.meaning() or last.next.reason
@@ -103,7 +103,7 @@ class Advice:
         return replace(answer, seconds=known.seconds, message=message)
 
     def against_experiment(self) -> tuple[ModelError | None, str]:
-        """The measured error of the rung that the answer is of, and in words; of the bound where no wall tested it."""
+        """Measured error of the answer's model and a description; the bound's error if no test covers that model."""
         known = self.known
         if known.answer is None:
             return None, ""
@@ -115,16 +115,16 @@ class Advice:
         return found, untested if found is None else f"{untested}; {found}"
 
     def _run(self, step: Step) -> list[Outcome]:
-        """The outcomes of a step, one a draw; fewer where one was interrupted."""
+        """Run a step; returns one outcome per draw, fewer if a run was interrupted."""
         known, model = self.known, step.model
         assert model is not None
         if step.finite:
             return [finite_peak(known, step)]
-        # No curve past the peak, which is no part of the bracket; and cracks in blocks where they may crack.
+        # The curve past the peak is not needed for the bracket; blocks crack anywhere if the scene permits this.
         wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
         wanted["programs"] = short_search(known.scene)
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
-        # Draws that agree are to lie within the tolerance together.
+        # With several draws half the tolerance for each, so that draws that agree lie within the tolerance together.
         tolerance, found = known.tolerance / min(step.draws, 2), list[Outcome]()
         for k in range(step.draws):
             found.append(run_model(model, Scatter().draw(known.scene, k), tolerance, **settings))
@@ -134,7 +134,7 @@ class Advice:
 
 
 def together(draws: Sequence[Outcome]) -> Outcome:
-    """What draws come to: the one that ends lowest, with a bracket that holds all that collapse, and their median."""
+    """Combine draws: the outcome with the lowest load, the bracket around all collapses, and their median as λ."""
     fallen = [draw for draw in draws if draw.lower is not None and draw.multiplier is not None]
     if len(draws) == 1 or not fallen:
         return draws[0]
@@ -145,7 +145,7 @@ def together(draws: Sequence[Outcome]) -> Outcome:
 
 
 def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Climb the ladder as far as a scene needs for a bracket of some relative width, or to `finite` displacements."""
+    """Run models until the bracket of a scene has the requested relative width, at `finite` displacements if set."""
     check_tolerance(tolerance)
     advice = Advice(Knowledge(scene, tolerance, finite))
     for _ in advice.climb():
@@ -154,14 +154,15 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
 
 
 def finite_peak(known: Knowledge, step: Step) -> Outcome:
-    """The wall pushed past its peak at finite displacements.
+    """Push a wall past its peak load at finite displacements.
 
-    Its bracket reaches down to the load above which nothing stands at small displacements, or inertia has borne it.
+    The bracket must reach down to the upper bound at small displacements; if its lower end is above this bound, inertia
+    has carried part of the load, and the outcome is undecided.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
-    distance = FARTHER * max(known.displacement or 0.0, tolerance) * scene.block_size
-    reach: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam is led as far as its drive says
+    distance = PUSH_FACTOR * max(known.displacement or 0.0, tolerance) * scene.block_size
+    reach: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam moves as its drive prescribes
     outcome = run_model(model, scene, tolerance, displacements="finite", **reach)
     if outcome.status == "collapse" and bound is not None and outcome.lower is not None and outcome.lower > bound:
         message = f"above the load that no wall bears at small displacements: {outcome.message}"

@@ -1,11 +1,11 @@
-"""What a model is going to cost, from what it cost on the published walls and what this machine has taken so far.
+"""Expected run time of a model, from its run times on the published walls and those on this machine so far.
 
-    seconds = pace · (at_100 · (n / 100)^growth · (COARSE / tolerance)^finer + start)
+    seconds = pace · (at_100 · (n / 100)^growth · (FITTED_TOLERANCE / tolerance)^finer + start)
 
 with n blocks and the `Cost` of the model, which `benchmarks/studies/cost_laws.py` prints from the table of a
-comparison, the power of the tolerance as `runningbond study` measures it; times factors for what of a wall makes it
-dearer. Pace is how much slower the machine at hand was in the models already run, so that the laws hold from one
-machine to the next: the mean of these models' ratios, each with the weight of what its law is worth.
+comparison, and the exponent of the tolerance as measured by `runningbond study`; multiplied by factors for features of
+the wall that increase the cost. The pace transfers the laws from one machine to another: it is the geometric mean of
+measured over expected time of the models already run, weighted by the inverse square of the scatter of each law.
 """
 
 from collections.abc import Sequence
@@ -18,21 +18,22 @@ from runningbond.results import Outcome
 from runningbond.results.outcome import two_digits
 from runningbond.scene import Scene
 
-COARSE = 0.01  # tolerance of the comparison that the laws were fitted to
+FITTED_TOLERANCE = 0.01  # tolerance of the comparison to which the laws were fitted
 
-EXACT = 1e-3
-"""Logarithm of the scatter of a law that claims to have none."""
+LEAST_SCATTER = 1e-3
+"""Least logarithm of the scatter of a law, for a finite weight if a law has no scatter."""
 
 POINT_PROGRAMS = 150_000
-"""Linear programs of a short search for certificates, times the ends of joints: as long as a few histories take."""
+"""Linear programs of a short search for certificates, times the number of joint ends. The search then takes about as
+long as a few histories."""
 
 SHORT_SEARCH = Cost(1.8, 1.03, 1.34, weightless=0.56, start=0.03)
-"""Law of what that costs."""
+"""Cost law of this short search."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Expected seconds, and the factor by which they may be wrong either way."""
+    """Expected seconds, and the factor by which they may be too high or too low."""
 
     seconds: float
     spread: float
@@ -43,30 +44,30 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Pace:
-    """How many times as long as the laws a machine takes, and the factor by which that may be wrong either way."""
+    """Time on this machine over the time by the laws, and the factor by which this ratio may be too high or too low."""
 
     factor: float = 1.0
     spread: float = 1.0
 
 
-USUAL = Pace()
-"""That of the machine which the laws were fitted on."""
+FITTED_PACE = Pace()
+"""Pace of the machine on which the laws were fitted."""
 
 
 def short_search(scene: Scene) -> int:
-    """Linear programs of the search for certificates that `advise` makes."""
+    """Number of linear programs in the search for certificates by `advise`."""
     return 20 + POINT_PROGRAMS // (2 * max(1, len(scene.joints)))
 
 
 def estimate(
-    model: Model, scene: Scene, tolerance: float, pace: Pace = USUAL, *, advised: bool = False, draws: int = 1
+    model: Model, scene: Scene, tolerance: float, pace: Pace = FITTED_PACE, *, advised: bool = False, draws: int = 1
 ) -> Estimate:
-    """What a model that has a `Cost` will take on some draws of a scene, of itself or as `advise` runs it."""
+    """Estimate the time of a model that has a `Cost` for some draws of a scene, run by itself or as in `advise`."""
     law = SHORT_SEARCH if advised and model.kind == "certificate" else model.cost
     if law is None:
-        raise ValueError(f"no law says what {model.name} costs")
+        raise ValueError(f"there is no cost law for {model.name}")
     blocks = int((scene.wall & ~scene.fixed).sum())
-    seconds = law.at_100 * (blocks / 100) ** law.growth * (COARSE / tolerance) ** law.finer
+    seconds = law.at_100 * (blocks / 100) ** law.growth * (FITTED_TOLERANCE / tolerance) ** law.finer
     if not any(scene.load.gravity):
         seconds *= law.weightless
     if scene.inner_joint is not None:
@@ -76,7 +77,7 @@ def estimate(
 
 
 def _dearer(model: Model, law: Cost, scene: Scene) -> float:
-    """How many times as much walls cost for what a model reads of their materials."""
+    """Factor on the cost for the most expensive material property that a model reads, and for soft blocks."""
     joints = scene.materials_of_joints
     causes = (
         ("fracture_energy_1", any(each.softens for each in joints), law.softened),
@@ -88,13 +89,13 @@ def _dearer(model: Model, law: Cost, scene: Scene) -> float:
 
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> Pace:
-    """How much slower than the laws the outcomes so far were; as fast where none of them took time enough to tell."""
+    """Pace from the outcomes so far; `FITTED_PACE` if none of them has a cost law and a measured time."""
     runs = [(MODELS[each.model], each.seconds) for each in outcomes if each.model in MODELS and each.seconds > 0]
     timed = [(model, seconds) for model, seconds in runs if model.cost is not None and model.kind != "estimate"]
     if not timed:
-        return USUAL
+        return FITTED_PACE
     laws = [estimate(model, scene, tolerance, advised=True) for model, _ in timed]
-    weights = [max(log(law.spread), EXACT) ** -2 for law in laws]
+    weights = [max(log(law.spread), LEAST_SCATTER) ** -2 for law in laws]
     slower = [log(seconds / law.seconds) for law, (_, seconds) in zip(laws, timed, strict=True)]
     mean = sum(weight * each for weight, each in zip(weights, slower, strict=True)) / sum(weights)
     return Pace(exp(mean), exp(sum(weights) ** -0.5))

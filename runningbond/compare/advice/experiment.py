@@ -1,6 +1,6 @@
-"""How far models were from walls that were broken in laboratories: what `runningbond validate` measured of them.
+"""Errors of the models on walls tested to failure in laboratories, as measured by `runningbond validate`.
 
-``measured.csv`` is the table `FILE` that it writes into its folder, copied from there.
+``measured.csv`` is a copy of the table `FILE` that this command writes into its folder.
 """
 
 import csv
@@ -21,22 +21,22 @@ DRY, MORTAR = "dry", "mortar"
 
 @dataclass(frozen=True)
 class ModelError:
-    """ΔV of a model, predicted over measured strength less 1, on walls of one kind of joints.
+    """Error ΔV of a model, predicted over measured strength minus 1, on walls with one kind of joints.
 
     Parameters
     ----------
     rung, base
-        The laboratory's name for it, and the model of this package that it is.
+        Name of the model in the laboratory, and the model of this package on which it is based.
     joints
         Kind of the walls' joints.
     finite, crushes, splits
-        Whether at finite displacements, with joints that crush, with blocks that split.
+        Whether displacements are finite, joints crush, and blocks split.
     walls
-        The walls, separated by blanks.
+        Names of the walls, separated by blanks.
     median
         Median of |ΔV|.
     least, most
-        Of ΔV.
+        Least and largest ΔV.
     """
 
     rung: str
@@ -60,19 +60,19 @@ class ModelError:
         )
 
     def as_json(self) -> dict[str, Any]:
-        """What a script is told."""
+        """Content for a script: the fields, with the walls as a list."""
         return asdict(self) | {"walls": self.walls.split()}
 
 
 def write_errors(errors: Iterable[ModelError]) -> str:
-    """The table as the text of a CSV file."""
+    """Table of errors as the text of a CSV file."""
     names = [field.name for field in fields(ModelError)]
     rows = [[f"{x:.4f}" if isinstance(x, float) else str(x) for x in asdict(each).values()] for each in errors]
     return csv_lines([names, *rows])
 
 
 def read_errors(path: Path = SHIPPED) -> list[ModelError]:
-    """Read such a table."""
+    """Read a table that `write_errors` has written."""
     read: dict[Any, Callable[[str], Any]] = {str: str, float: float, bool: "True".__eq__}
     with path.open(encoding="utf-8", newline="") as file:
         rows = [*csv.DictReader(file)]
@@ -80,13 +80,16 @@ def read_errors(path: Path = SHIPPED) -> list[ModelError]:
 
 
 def joints_of(scene: Scene) -> str:
-    """Kind of the joints between the blocks of a scene."""
+    """Kind of the joints between the blocks of a scene: mortar if any of them has cohesion, otherwise dry."""
     bonded = any(each.cohesion > 0 for each in scene.materials_of_joints if each.name != "inner_joint")
     return MORTAR if bonded else DRY
 
 
 def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
-    """The error of a model on walls with such joints, and as many of a scene's features; None if none was tested."""
+    """Measured error of a model on walls with the scene's kind of joints; None if no such wall was tested.
+
+    Of several, the one with the same assumptions on splitting blocks, then on crushing joints, is preferred.
+    """
     crushes = any(each.compressive_strength is not None for each in scene.materials_of_joints)
     splits = scene.inner_joint is not None
     own = [each for each in read_errors() if (each.base, each.joints, each.finite) == (model, joints_of(scene), finite)]

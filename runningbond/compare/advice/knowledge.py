@@ -1,4 +1,4 @@
-"""What a scene asks of a model, what the models run so far have shown of the wall, and what that is worth."""
+"""What a scene requires of a model, what the models run so far have found, and the evidence behind the answer."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -16,16 +16,16 @@ from runningbond.scene import Scene, SceneError
 
 from .costs import Estimate, estimate, pace
 
-Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  # what a bracket rests on; first nothing
+Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  # evidence for a bracket; empty if none
 
 
 def ladder(kind: Kind) -> list[Model]:
-    """Models of a kind whose cost is known, the cheapest first."""
+    """Models of a kind that have a cost law, in the order of the registry, about from cheap to expensive."""
     return [model for model in MODELS.values() if model.kind == kind and model.cost is not None]
 
 
 def _refuse(scene: Scene) -> None:
-    """Refuse what the ladder's bounds and certificates say nothing of, or mean the other way round."""
+    """Refuse loads for which the bounds and certificates of the ladder do not hold, or hold with opposite sense."""
     if scene.settlement:
         remedy = (
             "is not advised on: λ is the share that the support bears; take runningbond run, limit-nonassociated first"
@@ -45,24 +45,24 @@ def deforms(model: Model) -> bool:
 
 @dataclass
 class Knowledge:
-    """What is asked of a scene, and what the models run so far have shown."""
+    """The request for a scene, and what the models run so far have found."""
 
     scene: Scene
-    tolerance: float  # relative width of the bracket asked for
-    finite: bool = False  # whether finite displacements are asked for, however small they may be
+    tolerance: float  # requested relative width of the bracket
+    finite: bool = False  # whether finite displacements are requested, even if displacements are small
     outcomes: list[Outcome] = field(default_factory=list)
-    bound: float | None = None  # associated load, above which nothing stands at small displacements
-    evidence: Evidence = ""  # what the answer rests on
-    answer: Outcome | None = None  # the outcome whose bracket it is
-    lowest: float | None = None  # smallest load at which a proof, a certificate or a model brings the wall down
-    draws: int = 0  # histories that the last model followed to a collapse
-    contradicted: bool = False  # whether one ended beside certified loads that lay within the tolerance
+    bound: float | None = None  # associated limit load: an upper bound at small displacements
+    evidence: Evidence = ""  # kind of evidence for the answer
+    answer: Outcome | None = None  # outcome with the bracket of the answer
+    lowest: float | None = None  # smallest collapse load by a proof, a certificate or a history
+    draws: int = 0  # number of histories that the last model followed up to collapse
+    contradicted: bool = False  # whether a history and narrow certified loads together exceed the tolerance
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
         may_crack, tied = self.scene.inner_joint is not None, len(self.scene.ties) > 0
         self.cracks = may_crack and not tied  # blocks may crack anywhere,
-        self.halves = may_crack and tied  # or on their axes alone, for triangles are held by no tie
+        self.halves = may_crack and tied  # or only along their axes, because ties cannot be attached to triangles
         materials = self.scene.materials_of_joints
         self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
@@ -71,17 +71,17 @@ class Knowledge:
         _refuse(self.scene)
 
     def learn(self, model: Model, outcome: Outcome, *, finite: bool = False, draws: Sequence[Outcome] = ()) -> None:
-        """Take in the outcome of a model, at `finite` displacements or at small ones, or what its draws come to."""
+        """Add the outcome of a model, at `finite` or small displacements, or the combined outcome of its `draws`."""
         self.outcomes.append(outcome)
         if outcome.status == "unbounded" and model.kind == "history" and self.answer and self.evidence == "certificate":
-            # Forces that bring it down are certified, but the load alone did not bring them about.
+            # Collapse is certified for some joint forces, but the load alone did not lead to such forces.
             self.answer = replace(self.answer, status="undecided", multiplier=None, upper=None)
         if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
             return
         if model.kind == "bound":
             self.bound = outcome.upper
             weakens = self.softens or self.gives_way or self.cracks
-            # Without a live load forces balance the wall, and nothing stands above.
+            # The wall is in equilibrium without live load, and collapses under any live load.
             nothing = outcome.upper <= 0
             if not weakens and (nothing or not sliding_dilates(self.scene, outcome.motion)):
                 self._answer("proof", outcome, outcome.lower)
@@ -93,28 +93,30 @@ class Knowledge:
         elif finite:
             self._answer("finite", outcome, outcome.lower)
         else:
-            # The upper end of paths in several load steps is where the last of them fell.
+            # If paths with several load steps were followed, `upper` is the highest of their collapse loads.
             falls = [each.upper if each.fall is None else each.fall for each in draws or (outcome,) if each.upper]
             self.draws = max(1, len(falls))
             self._follow(outcome, min(falls, default=outcome.upper))
 
     @property
     def histories(self) -> list[Model]:
-        """Models that follow the wall, those aside that do not know its joints; the cheapest first."""
+        """Models that follow the loading path and include crushing and closure if the joints have them."""
         known = {"joint.compressive_strength": self.crushes, "joint.closure": self.closes}
         wanted = {key for key, is_wanted in known.items() if is_wanted}
         return [model for model in ladder("history") if wanted <= model.reads]
 
     def _follow(self, outcome: Outcome, fall: float) -> None:
-        """Take in the bracket of histories, the first of which ended at a load; certified loads stay that it fits."""
+        """Add the bracket of histories with lowest collapse load `fall`; certified loads that agree with it stay."""
         assert outcome.lower is not None
         assert outcome.upper is not None
         history = outcome
-        if self.bound is not None and outcome.multiplier is not None:  # it cannot have stood above that
+        if self.bound is not None and outcome.multiplier is not None:  # higher loads are an error of the history
             upper = max(outcome.lower, min(outcome.upper, self.bound))
             history = replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
             fall = min(fall, self.bound)
-        if self.narrow and self.answer is not None and self.answer.lower is not None and not self._is_above(outcome):
+        if self._is_above(outcome):
+            self.contradicted = self.narrow
+        elif self.narrow and self.answer is not None and self.answer.lower is not None:
             lower = self.answer.lower if fall >= self.answer.lower else outcome.lower
             upper = max(self.answer.upper or 0.0, history.upper or 0.0)
             wider = replace(self.answer, lower=min(lower, self.answer.lower), upper=upper)
@@ -125,13 +127,13 @@ class Knowledge:
         self._answer("history", history, fall)
 
     def _is_above(self, history: Outcome) -> bool:
-        """Whether a history ends farther above certified loads, which no bound holds, than the tolerance."""
+        """Whether a history ends above the certified loads by more than the tolerance, if there is no upper bound."""
         upper = None if self.answer is None else self.answer.upper
         return self.bound is None and upper is not None and (history.lower or 0.0) > upper * (1 + self.tolerance)
 
     @property
     def narrow(self) -> bool:
-        """Whether the answer is certified loads that lie within the tolerance."""
+        """Whether the answer is an interval of certified loads within the tolerance."""
         return self.evidence == "certificate" and self.answer is not None and _within(self.answer, self.tolerance)
 
     def _answer(self, evidence: Evidence, outcome: Outcome, collapse: float) -> None:
@@ -140,17 +142,17 @@ class Knowledge:
 
     @property
     def seconds(self) -> float:
-        """Seconds that the models have taken."""
+        """Total seconds of the models run so far."""
         return sum(outcome.seconds for outcome in self.outcomes)
 
     @property
     def soft(self) -> bool:
-        """Whether blocks are so compliant that they must deform."""
+        """Whether the blocks are so compliant that a model must include their deformation."""
         return self.compliance > self.tolerance
 
     @property
     def displacement(self) -> float | None:
-        """How far the live load moves the wall until it collapses, by its curve or elastically [block sizes]."""
+        """Displacement under the live load up to collapse, from the curve or elastic [block sizes]."""
         if self.answer is None or self.answer.lower is None:
             return None
         if not len(self.answer.curve):
@@ -161,18 +163,18 @@ class Knowledge:
         return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)
 
     def estimate(self, model: Model, draws: int = 1) -> Estimate:
-        """What a model is going to cost on some draws, at the pace of those run so far."""
+        """Expected cost of a model for some draws, at the pace of the models run so far."""
         at = pace(self.scene, self.tolerance, self.outcomes)
         return estimate(model, self.scene, self.tolerance, at, advised=True, draws=draws)
 
     def meaning(self) -> str:
-        """What the bracket of the answer means; empty without one."""
+        """Meaning of the bracket of the answer, in words; empty if there is no answer."""
         if self.answer is None:
             return ""
         return self._meaning(self.answer) + ("; blocks crack on their axes alone" if self.halves else "")
 
     def _meaning(self, answer: Outcome) -> str:
-        """What the bracket of an answer means."""
+        """Meaning of the bracket of an answer, in words."""
         above = "" if self.bound is None else f"; above {number(self.bound)} nothing stands"
         if self.evidence == "proof":
             return "forces and a mechanism prove it, whether or not sliding joints dilate"
@@ -193,7 +195,7 @@ class Knowledge:
         return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
 
     def _certified(self, answer: Outcome) -> str:
-        """At which loads of the answer collapse is certified: not where the bound or a history has widened it."""
+        """Describe the certified part of the answer, before the bound or a history has widened its bracket."""
         own = next(each for each in reversed(self.outcomes) if each.model == answer.model)
         if (own.lower, own.upper) == (answer.lower, answer.upper):
             return "loads at which collapse is certified"
@@ -202,6 +204,6 @@ class Knowledge:
 
 
 def _within(outcome: Outcome, tolerance: float) -> bool:
-    """Whether a bracket is as narrow as a relative width."""
+    """Whether the relative width of a bracket is at most the tolerance."""
     lower, upper = outcome.lower, outcome.upper
     return lower is not None and upper is not None and upper - lower <= tolerance * upper

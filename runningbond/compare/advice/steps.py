@@ -1,4 +1,4 @@
-"""Which model comes next, and why: from what is known so far to a step, one function a kind of model."""
+"""Choice of the next model and the reason for it, from the knowledge so far; one function per kind of model."""
 
 from dataclasses import dataclass
 
@@ -7,26 +7,26 @@ from runningbond.results import Outcome
 
 from .knowledge import Knowledge, deforms, ladder
 
-DRAWS = 3  # histories that are followed where certified loads lie apart, of walls that differ in their last bits
+DRAWS = 3  # histories, of walls that differ in their last bits, if the certified loads spread beyond the tolerance
 
 
 @dataclass(frozen=True)
 class Step:
-    """What to do next, and why: run a model, at finite displacements or small ones; or nothing, None."""
+    """The next step and the reason for it: a model to run, at finite or small displacements, or None to stop."""
 
     model: Model | None
     reason: str
     finite: bool = False
-    draws: int = 1  # of walls that differ in their last bits
+    draws: int = 1  # number of runs, on walls that differ in their last bits
 
     @property
     def name(self) -> str | None:
-        """What the step is called."""
+        """Name of the step: that of its model, marked if displacements are finite; None if no model follows."""
         return None if self.model is None else self.model.name + (", finite" if self.finite else "")
 
 
 def next_step(known: Knowledge, step: Step, outcome: Outcome) -> Step:
-    """What follows from an outcome that is already part of what is known."""
+    """Step that follows from an outcome that `Knowledge.learn` has already added."""
     assert step.model is not None
     if step.model.kind == "estimate":
         return Step(ladder("bound")[0], "an estimate for the wall as a continuum, on either side; a bound is wanted")
@@ -44,7 +44,7 @@ def next_step(known: Knowledge, step: Step, outcome: Outcome) -> Step:
 
 
 def after_refusal(known: Knowledge, step: Step, refusal: str) -> Step:
-    """What follows where a model does not apply to the scene."""
+    """Step that follows if a model does not apply to the scene."""
     assert step.model is not None
     if step.model.kind == "estimate":
         reason = refusal.removeprefix(f"model {step.model.name}: ")
@@ -60,7 +60,7 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
     bound = "no wall stands above it" if outcome.status == "collapse" else outcome.status
     if known.cracks:
         model = next(model for model in histories if "cracks" in model.parameters)
-        return Step(model, f"{bound}; blocks may crack elsewhere than on their axes, and do in {model.name} alone")
+        return Step(model, f"{bound}; blocks may crack elsewhere than on their axes, as only {model.name} models it")
     if known.softens:
         softening = [model for model in histories if "joint.fracture_energy_1" in model.reads]
         others = [model.name for model in (*ladder("certificate"), *ladder("history")) if model not in softening]
@@ -71,7 +71,7 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
         return _enough(known, "it bears none of the live load" if known.bound == 0.0 else nothing)
     model, why = _history(known)
     if known.crushes:
-        return Step(model, f"{bound}; joints crush, of which certificates know nothing: {why}")
+        return Step(model, f"{bound}; joints crush, which certificates do not include: {why}")
     if not any(known.scene.load.gravity):
         return Step(model, f"{bound}; without weight certified intervals are wide: {why}")
     return Step(ladder("certificate")[0], f"{bound}; true friction does not dilate, and collapse may come earlier")
@@ -80,11 +80,11 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
 def _after_certificate(known: Knowledge, outcome: Outcome) -> Step:
     if outcome.status == "unbounded":
         return Step(None, "it is self-locking even where friction does not dilate")
-    if known.narrow:  # rigid blocks do, for certificates know no stiffness
+    if known.narrow:  # rigid blocks suffice: certificates do not include stiffness
         why = "the certified loads lie within the tolerance, but a better search may find lower ones"
         return Step(_cheapest_rigid(known), f"{why}: one history is followed to see")
     model, why = _history(known)
-    draws = 1 if deforms(model) else DRAWS  # deformable blocks are the dearest
+    draws = 1 if deforms(model) else DRAWS  # deformable blocks cost most
     if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
         return Step(model, f"no collapse was certified: {why}", draws=draws)
     return Step(model, f"λ depends on how the load came about, by more than the tolerance: {why}", draws=draws)
@@ -112,7 +112,7 @@ def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome)
 
 
 def _history(known: Knowledge) -> tuple[Model, str]:
-    """The model that is to follow the wall, and why that one."""
+    """Model that is to follow the loading path, and the reason for its choice."""
     if known.soft:
         return next(model for model in known.histories if deforms(model)), _compliance(known)
     return _cheapest_rigid(known), "it is followed by the cheapest model of rigid blocks"
@@ -129,7 +129,7 @@ def _compliance(known: Knowledge) -> str:
 
 
 def _enough(known: Knowledge, why: str) -> Step:
-    """The answer so far suffices, unless the wall moves so far before that its geometry is another."""
+    """Stop with the answer so far, unless displacements before collapse are too large for the initial geometry."""
     far = (model for model in known.histories if "displacements" in model.parameters)
     finite = next(model for model in far if deforms(model) == known.soft)
     if known.finite:
