@@ -1,7 +1,7 @@
 """`advise` beside all six models: brackets, rungs, and processor time in one run.
 
-From the project's directory, for all published walls or some of them, the models at the same tolerance or at that of
-``runningbond compare``:
+From the project's directory, for all published walls or some of them, with the models at the same tolerance as `advise`
+or at that of ``runningbond compare``:
 
     python benchmarks/advise.py
     python benchmarks/advise.py --against 0.01 panel-02 panel-04 wall-w3
@@ -20,7 +20,7 @@ from runningbond.scene import Scene, SceneError
 
 
 def timed_model(model: str, scene: Scene, tolerance: float) -> tuple[Outcome | None, float]:
-    """Outcome of a model, None where it does not apply, and the processor time that it took [s]."""
+    """Outcome of a model, None if it does not apply, and its processor time [s]."""
     start = time.process_time()
     try:
         outcome = run_model(model, scene, tolerance)
@@ -30,7 +30,7 @@ def timed_model(model: str, scene: Scene, tolerance: float) -> tuple[Outcome | N
 
 
 def main() -> None:
-    """Print a row a wall, then the ratio of the sums."""
+    """Print one row per wall, then the ratio of the sums."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("walls", nargs="*", help="published walls, all by default")
     parser.add_argument("--tolerance", type=float, default=TOLERANCE)

@@ -1,10 +1,10 @@
-"""Cost against size: processor seconds of every model on running-bond panels, until a run no longer fits its budget.
+"""Cost against size: processor seconds of every model on running-bond panels, until a run exceeds its budget.
 
     python benchmarks/cost_over_size.py [--seconds 60] [--models limit,fem] [--out docs/cost-over-size.png]
 
-Every run is a process of its own and is ended once it has taken so many processor seconds; what it would have taken is
-not known, and the chart's open arrow says so. Compiled kernels are loaded before anything is measured. The table is
-kept beside the picture (CSV), and models that are not run again, with ``--models ""`` all, are drawn from it.
+Every run is a process of its own and is ended after that many processor seconds; an arrow in the chart marks that its
+true cost is not known. Compiled kernels are loaded before the measurement. The table is stored beside the picture
+(CSV), and models that are not run again (with ``--models ""`` all) are drawn from it.
 """
 
 import argparse
@@ -24,14 +24,14 @@ from runningbond.models import MODELS, run_model
 from runningbond.scene import Mortar, Scene
 
 ACROSS = (4, 6, 9, 12, 17, 24, 35, 50, 70, 100, 158, 223)
-"""Blocks a course; twice as many courses."""
+"""Blocks per course; the number of courses is twice as large."""
 
 MORTAR = Mortar(1e9, 0.2, 0.01)
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run: processor seconds, largest memory [GB] and status, which is empty if its budget of seconds ended it."""
+    """A run: processor seconds, peak memory [GB], and status, which is empty if the run exceeded its budget."""
 
     model: str
     blocks: int
@@ -46,7 +46,7 @@ def panel(across: int) -> Scene:
 
 
 def measured(model: str, scene: Scene, seconds: int) -> Run:
-    """Run a model in a process that may take so long."""
+    """Run a model in a process of its own with a budget of processor seconds."""
     here, there = multiprocessing.Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(target=_run, args=(model, scene, seconds, there))
     process.start()
@@ -70,7 +70,7 @@ def _run(model: str, scene: Scene, seconds: int, there: Connection) -> None:
 
 
 def every_size(model: str, seconds: int) -> list[Run]:
-    """Runs of a model up to the first that does not fit, each told as it ends."""
+    """Run a model on growing panels up to the first that exceeds the budget; prints each run as it ends."""
     runs: list[Run] = []
     run_model(model, panel(ACROSS[0]))
     for across in ACROSS:
@@ -83,7 +83,7 @@ def every_size(model: str, seconds: int) -> list[Run]:
 
 
 def chart(table: list[Run]) -> Figure:
-    """Both axes in powers of ten; open markers are runs without an answer, arrows those that the budget ended."""
+    """Draw cost over size on logarithmic axes; open markers are runs without an answer, arrows exceeded budgets."""
     figure = Figure(figsize=(7.2, 5.0), layout="constrained")
     axes = figure.add_subplot()
     for name, looks in MODELS.items():
@@ -113,7 +113,7 @@ def chart(table: list[Run]) -> Figure:
 
 
 def main() -> None:
-    """Print a row a run, and draw."""
+    """Print one row per run, store the table, and draw the chart."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=int, default=60, help="most processor seconds of a run")
     parser.add_argument("--models", default=",".join(MODELS))

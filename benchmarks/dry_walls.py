@@ -1,9 +1,9 @@
-"""What could explain dry walls that blocks that split predict badly: one number changed at a time.
+"""Possible reasons for bad predictions of dry walls by splitting blocks: one parameter changed at a time.
 
     python -m benchmarks.dry_walls SW.200.1 WS.100
 
-Largest force of `rigid-splitting` on the test's path, its part of the measured one, ratios to the test of the stiffness
-and of the displacement at which a fifth is lost, and processor seconds.
+Prints the largest force of `rigid-splitting` on the test's path and its deviation from the measured one, ratios to the
+test of the stiffness and of the displacement at which a fifth of the force is lost, and processor seconds.
 """
 
 import argparse
@@ -27,24 +27,24 @@ RUNG = LADDER["rigid-splitting"]
 
 
 def same(scene: Scene) -> Scene:
-    """The scene as it is."""
+    """Return the scene unchanged."""
     return scene
 
 
 def soft_in_shear(scene: Scene) -> Scene:
-    """With a tenth of the normal stiffness under the vertical load in shear; it has 1 / 2.4 of it as shipped."""
+    """Reduce the shear stiffness from 1 / 2.4 to 1 / 10 of the normal stiffness under the vertical load."""
     stiffness = joint_stiffness(scene.joint)
     return scene.with_joint(elasticity=Stiffness(stiffness.normal, 0.24 * stiffness.shear))
 
 
 def unclosed(scene: Scene) -> Scene:
-    """As stiff under any pressure as joints are without, in shear as well."""
+    """Keep the stiffness of joints without pressure under any pressure, in shear as well."""
     stiffness = joint_stiffness(scene.joint)
     return scene.with_joint(closure=None, elasticity=Stiffness(stiffness.normal, stiffness.normal / 2.4))
 
 
 def soft(scene: Scene) -> Scene:
-    """With a quarter of the stiffness without pressure, whatever the pressure."""
+    """Set a quarter of the stiffness of joints without pressure, under any pressure."""
     stiffness = joint_stiffness(scene.joint)
     return scene.with_joint(closure=None, elasticity=Stiffness(stiffness.normal / 4, stiffness.normal / 9.6))
 
@@ -62,7 +62,7 @@ CASES: dict[str, tuple[dict[str, Any], Callable[[Scene], Scene]]] = {
 
 
 def row(wall: MeasuredWall, case: str) -> str:
-    """Cells of a case of a wall."""
+    """Table cells of a wall for a case."""
     changes, change = CASES[case]
     with patch.dict(STONES, {name: replace(stone, **changes) for name, stone in STONES.items()}):
         scene = change(scene_of(wall, RUNG.features))
@@ -77,7 +77,7 @@ def row(wall: MeasuredWall, case: str) -> str:
 
 
 def main() -> None:
-    """Print a row a case of each wall."""
+    """Print one row per wall and case."""
     walls = shipped_walls()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("walls", nargs="*", default=["SW.200.1", "WS.100"])

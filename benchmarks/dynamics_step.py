@@ -1,7 +1,7 @@
 """Cost of a time step: the three-pass kernels beside the same operators as sparse matrices, in one run.
 
-Prints nanoseconds a joint point and step, with the spread of the runs; the ratio is of medians. Then the cost of a
-step against the number of blocks, with the slope of its logarithm.
+Prints nanoseconds per joint point and step, with the spread of the runs and the ratio of medians; then the cost of a
+step against the number of blocks, and its exponent.
 """
 
 import statistics
@@ -27,7 +27,7 @@ WALL = {
 
 
 def seconds(call: Callable[[], object]) -> list[float]:
-    """Processor times of a few calls, after one that does not count."""
+    """Processor times of `RUNS` calls, after one call to warm up."""
     call()
     times = []
     for _ in range(RUNS):
@@ -38,7 +38,7 @@ def seconds(call: Callable[[], object]) -> list[float]:
 
 
 def kernels(scene: Scene, steps: int) -> list[float]:
-    """Seconds a step of the compiled kernels."""
+    """Seconds per step of the compiled kernels."""
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
     run.hold(state, 0.2, 500)
@@ -46,7 +46,7 @@ def kernels(scene: Scene, steps: int) -> list[float]:
 
 
 def sparse(scene: Scene, steps: int) -> list[float]:
-    """Seconds a step of the same scheme written with sparse matrices and whole-array numpy."""
+    """Seconds per step of the same scheme, with sparse matrices and numpy arrays."""
     system, points = rigid_system(scene), contact_points(scene)
     run = Run(system)
     # Columns in the order of the system's coordinates.
@@ -82,7 +82,7 @@ def sparse(scene: Scene, steps: int) -> list[float]:
 
 
 def panel(blocks: int) -> Scene:
-    """A square panel of about so many blocks of 240 × 60 mm."""
+    """A square panel with about this number of blocks of 240 × 60 mm."""
     courses = max(2, round((blocks * 4) ** 0.5))
     along = max(1, round(blocks / courses))
     wall = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12}

@@ -1,10 +1,10 @@
-"""Cost of a time step of deformable blocks: modes and runs beside nodes and sparse matrices, in one run.
+"""Cost of a time step of deformable blocks: modal form with compiled kernels beside nodal form with sparse matrices.
 
-Both take the same blocks in triangles, the same joint elements and the same law; the second in the form
-K u + Bᵀ (w σ(B u)) on nodal arrays, with the consistent mass, which is the same step, and with a lumped one, which
-needs no solution but has other rotary inertias. Prints processor nanoseconds a triangle and step with the
-spread of the runs, the cost against the number of blocks with the slope of its logarithm, and what a physical second
-costs where blocks are as stiff as the paper's: with mass scaling, and with the sparse form's own stable step.
+Both have the same triangles, the same joint elements and the same law. The nodal form K u + Bᵀ (w σ(B u)) has either
+the consistent mass, which yields the same step, or a lumped mass, which needs no linear solve but has different rotary
+inertia. Prints, in one run, processor nanoseconds per triangle and step with their spread; the cost of a second of
+motion with blocks as stiff as in the paper, by the modal form with mass scaling and by the sparse form with its own
+stable step; and the cost against the number of triangles, with its exponent.
 """
 
 import statistics
@@ -32,7 +32,7 @@ WALL = {
 
 
 def panel(blocks: int) -> Scene:
-    """A square panel of about so many blocks of 240 × 60 mm."""
+    """A square panel with about this number of blocks of 240 × 60 mm."""
     courses = max(2, round((blocks * 4) ** 0.5))
     along = max(1, round(blocks / courses))
     wall = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12}
@@ -40,7 +40,7 @@ def panel(blocks: int) -> Scene:
 
 
 def seconds(call: Callable[[], object]) -> list[float]:
-    """Processor times of a few calls, after one that does not count."""
+    """Processor times of `RUNS` calls, after one call to warm up."""
     call()
     times = []
     for _ in range(RUNS):
@@ -51,12 +51,12 @@ def seconds(call: Callable[[], object]) -> list[float]:
 
 
 def triangles(wall: ModalWall) -> int:
-    """Triangles of the blocks that move."""
+    """Number of triangles in the blocks that move."""
     return int((~wall.scene.fixed[wall.mesh.triangle_block]).sum())
 
 
 def modal(wall: ModalWall, steps: int) -> tuple[list[float], float]:
-    """Seconds a step of the compiled kernels, and the step [s]."""
+    """Seconds per step of the compiled kernels, and the time step [s]."""
     run = Run(system_of(wall))
     state = State.at_rest(run.system)
     run.hold(state, 0.2, 500)
@@ -64,7 +64,7 @@ def modal(wall: ModalWall, steps: int) -> tuple[list[float], float]:
 
 
 def sparse(wall: ModalWall, steps: int, *, lumped: bool) -> tuple[list[float], float]:
-    """Seconds a step of the same scheme with nodal arrays and sparse matrices, and its stable step [s]."""
+    """Seconds per step of the same scheme with nodal arrays and sparse matrices, and its stable time step [s]."""
     scene, mesh, system = wall.scene, wall.mesh, system_of(wall, damping=0.0, mass_scaling=False)
     free = np.repeat(~scene.fixed[mesh.block], 2)
     young, poisson = scene.block.young or 0.0, scene.block.poisson
@@ -109,7 +109,7 @@ def sparse(wall: ModalWall, steps: int, *, lumped: bool) -> tuple[list[float], f
 
 
 def main() -> None:
-    """Print the three tables."""
+    """Print the tables."""
     wall = modal_wall(panel(1230), modes="all")
     n, blocks = triangles(wall), int((~wall.scene.fixed).sum())
     found = {
@@ -143,5 +143,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    with threadpool_limits(limits=1, user_api="blas"):  # as models run: a second thread waits, and its time counts
+    with threadpool_limits(limits=1, user_api="blas"):  # as in the models; processor time includes waiting threads
         main()

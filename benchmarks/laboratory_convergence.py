@@ -1,10 +1,10 @@
-"""How far the scores of `rigid-splitting` move with half the step, half the speed and more or fewer points a joint.
+"""Change of the scores of `rigid-splitting` with half the time step, half the speed, and other numbers of joint points.
 
     python -m benchmarks.laboratory_convergence [WALL …]
 
-The wall is led at one rate, `RATE`, so that only one thing changes from row to row; as shipped, the rate is halved
-until the largest force settles. Each row has that force, the secant at 0.3 of it, the displacements at the peak and
-where it has fallen to 0.8 (for walls that reach it), relative to the first row, and the energy not accounted for.
+The beam is driven at a constant rate, `RATE`, and only one parameter changes from row to row; as shipped, the rate is
+halved until the largest force converges. Each row has this force, the secant stiffness at 0.3 of it, the displacements
+at the peak and at the drop to 0.8 (for walls that reach it), relative to the first row, and the unaccounted energy.
 """
 
 import sys
@@ -27,14 +27,14 @@ from runningbond.models import TOLERANCE
 from runningbond.scene import Scene
 
 RATE = 0.04
-"""Speed of the beam [m/s], about that at which the shipped walls settle."""
+"""Speed of the beam [m/s], about the one at which the largest forces of the shipped walls converge."""
 
 POINTS = (5, 17)
 """Points along a joint, in place of `BETWEEN`."""
 
 
 def follow(scene: Scene, step: float, points: int | None) -> tuple[Marks, float]:
-    """Lead a wall with a part of the stable time step; its marks, and the largest energy unaccounted for."""
+    """Drive a wall with `step` times the stable time step; returns its marks, and the unaccounted energy at the end."""
     rule = import_module("runningbond.joints.wall_points")
     with patch.object(rule, "BETWEEN", points or rule.BETWEEN):
         run, lost = Run(finite_system(scene), local=MOVING), list[float]()
@@ -63,7 +63,7 @@ def follow(scene: Scene, step: float, points: int | None) -> tuple[Marks, float]
 
 
 def at_rate(scene: Scene, rate: float) -> Scene:
-    """The scene, led at a rate [m/s]."""
+    """The scene with its beam driven at a rate [m/s]."""
     beam = scene.beam
     assert beam is not None
     assert beam.drive is not None
@@ -71,12 +71,12 @@ def at_rate(scene: Scene, rate: float) -> Scene:
 
 
 def change(now: float | None, before: float | None) -> str:
-    """By how much a number has changed."""
+    """Relative change of a number, as text."""
     return "–" if now is None or before is None else f"{now / before - 1:+.1%}"
 
 
 def main(names: list[str]) -> None:
-    """Print a row a change of each wall."""
+    """Print one row per wall and change."""
     walls = shipped_walls()
     print("| wall | what | V [kN] | V | stiffness | at the peak | at 0.8 | energy unaccounted | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")

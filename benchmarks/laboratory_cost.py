@@ -1,9 +1,9 @@
-"""Cost of a wall of some fifty blocks that is pushed to 20 mm, by models whose blocks may split.
+"""Cost of walls of some fifty blocks that are pushed to 20 mm, by models whose blocks may split.
 
     python -m benchmarks.laboratory_cost [WALL …]
 
-Of the shipped dry walls that are pushed to one side where none is named: their own way ends at another displacement
-each. Compilation of kernels does not count; the median and the range of `REPEATS` runs in one process are printed.
+By default the shipped dry walls that are pushed to one side; in the tests each of them ends at another displacement.
+Compilation of kernels is not included; the median and the range of `REPEATS` runs in one process are printed.
 """
 
 import sys
@@ -21,7 +21,7 @@ TO, REPEATS = 0.02, 3
 
 
 def pushed(scene: Scene, displacement: float) -> Scene:
-    """The scene, its beam pushed to a displacement [m] to one side."""
+    """The scene with its beam pushed to one side, up to a displacement [m]."""
     beam = scene.beam
     assert beam is not None
     assert beam.drive is not None
@@ -29,7 +29,7 @@ def pushed(scene: Scene, displacement: float) -> Scene:
 
 
 def main(names: list[str]) -> None:
-    """Print a row a wall and model."""
+    """Print one row per wall and model."""
     walls = shipped_walls()
     print("| wall | blocks | model | status | V [kN] | time steps | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- |")

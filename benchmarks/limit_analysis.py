@@ -1,6 +1,6 @@
 """Limit analysis of every published wall beside a bare `linprog` call on the same matrices.
 
-The two are timed in turn, run by run; what is quoted is the median ratio and its spread.
+The two are timed in turn, run by run; the table has the median ratio and its spread.
 """
 
 import statistics
@@ -26,12 +26,12 @@ def seconds(call: Callable[[Argument], object], argument: Argument) -> float:
 
 
 def bare(program: dict[str, Any]) -> object:
-    """Solve a program with nothing round it."""
+    """Solve a linear program by a direct call of HiGHS."""
     return linprog(**program, method="highs-ipm")
 
 
 def main() -> None:
-    """Print a row a wall."""
+    """Print one row per wall."""
     print("wall                 blocks   build [ms]   linprog [s]   limit [s]   limit / linprog (spread)")
     for case in PUBLISHED:
         scene = published_scene(case.name)

@@ -2,7 +2,7 @@
 
     python benchmarks/limit_large.py [BLOCKS …]
 
-Processor seconds, medians of runs made in turn; HiGHS is asked up to `HIGHS_UP_TO` blocks.
+Prints processor seconds, medians of runs in turn; HiGHS solves walls of up to `HIGHS_UP_TO` blocks.
 """
 
 import statistics
@@ -14,14 +14,14 @@ from runningbond.limit.force_program import coulomb, solve_forces
 from runningbond.scene import Scene, scene_from_dict
 
 SIZES = {300: (12, 24), 1176: (24, 48), 5000: (50, 99), 10000: (70, 140)}
-"""Blocks a course, and courses."""
+"""Blocks per course, and number of courses, by the number of blocks."""
 
 RUNS = 3
 HIGHS_UP_TO = 1176
 
 
 def wall(blocks: int, courses: int) -> Scene:
-    """Panel of blocks 240 × 60 × 120 mm pushed sideways by its weight."""
+    """Panel of blocks of 240 × 60 × 120 mm under lateral load proportional to its weight."""
     return scene_from_dict(
         {
             "title": "large panel",
@@ -36,7 +36,7 @@ def wall(blocks: int, courses: int) -> Scene:
 
 
 def main(sizes: list[int]) -> None:
-    """Print a row a wall."""
+    """Print one row per wall."""
     print("blocks   lower        upper        width     limit [s]   HiGHS alone [s]   its λ")
     for size in sizes:
         scene = wall(*SIZES[size])

@@ -1,8 +1,8 @@
-"""The search for the smallest certified load on published walls, with rounded contacts too: loads, effort, seconds.
+"""The search for the smallest certified load on published walls, also with inset contacts: loads, programs, seconds.
 
     python -m benchmarks.limit_search [SCENE …]
 
-Processor seconds of one run each, by one worker.
+Processor seconds are those of one run each, by one worker.
 """
 
 import sys
@@ -16,7 +16,7 @@ INSET = 0.02
 
 
 def main(names: list[str]) -> None:
-    """Print a row a wall."""
+    """Print one row per wall."""
     print("wall                 blocks   lower         upper         programs   seconds")
     scenes: list[tuple[str, Scene]] = [(name, published_scene(name)) for name in names]
     scenes += [(f"{name}, inset", scene.with_joint(inset=INSET)) for name, scene in scenes if name.startswith("wall")]

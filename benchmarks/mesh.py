@@ -1,4 +1,4 @@
-"""Mesh a wall of 20 000 blocks and write it: medians of five runs, and gmsh's share of them."""
+"""Mesh a wall of 20 000 blocks and write it: medians of five runs, and the time spent in gmsh."""
 
 import statistics
 import tempfile
@@ -27,7 +27,7 @@ def median(action: Callable[[], object]) -> float:
 
 
 def main() -> None:
-    """Print what it takes."""
+    """Print the times."""
     scene = build_scene(
         "48 m × 6 m",
         rectangles(bonded_rows(BOND.width, 48.0, 100), BOND.width, BOND.levels(100)),

@@ -1,9 +1,9 @@
-"""Cost of motion against size: processor seconds of `dem-dynamic` a second of ground motion, on running-bond panels.
+"""Cost against size: processor seconds of `dem-dynamic` per second of ground motion, on running-bond panels.
 
     PYTHONPATH=. python benchmarks/motion_cost.py [docs/ground-motion-cost.png]
 
-The ground moves by a sine of 2.5 Hz, under which the panel holds together (0.1 g) or slides and rocks (1 g); what is
-measured is `SPAN` seconds from an eighth of the period on, medians of `RUNS` runs by turns, after the wall is at rest.
+The ground moves by a sine of 2.5 Hz, under which the panel holds together (0.1 g) or slides and rocks (1 g). The wall
+starts at rest; `SPAN` seconds from an eighth of the period on are measured, medians of `RUNS` runs in turn.
 """
 
 import statistics
@@ -23,14 +23,14 @@ from runningbond.scene.history import STANDARD_GRAVITY, pulse
 from tests.response.walls import resting
 
 ACROSS = (4, 6, 9, 12, 17, 24, 39)
-"""Blocks a course; twice as many courses."""
+"""Blocks per course; the number of courses is twice as large."""
 
 PERIOD, SPAN, RUNS = 0.4, 0.1, 3
 MOTIONS = {"0.1 g: holds together": (0.1, "#0b559f", "o"), "1 g: slides and rocks": (1.0, "#c2410c", "s")}
 
 
 def spent(rest: Resting, history: History) -> tuple[float, float]:
-    """Processor seconds a second of motion, and time step [s]."""
+    """Processor seconds per second of motion, and time step [s]."""
     run, state = Run(rest.system, local=0.0, viscous=rest.viscous, part=PART), rest.state.copy()
     ground = Ground(run, history, 1.0, state.time)
     ground.bring(state, PERIOD / 8)
@@ -40,7 +40,7 @@ def spent(rest: Resting, history: History) -> tuple[float, float]:
 
 
 def measured() -> list[tuple[int, float, dict[str, float]]]:
-    """Blocks, time step [s], and processor seconds a second of each motion."""
+    """Number of blocks, time step [s], and processor seconds per second of each motion, for each size."""
     rows: list[tuple[int, float, dict[str, float]]] = []
     histories = {
         name: History(*pulse("sine", amplitude * STANDARD_GRAVITY, PERIOD), interval=PERIOD / 200)
@@ -51,7 +51,7 @@ def measured() -> list[tuple[int, float, dict[str, float]]]:
         scene = panel(across)
         rest = resting(replace(scene, load=replace(scene.load, live=(histories["0.1 g: holds together"],))))
         if not rows:
-            spent(rest, histories["0.1 g: holds together"])  # kernels
+            spent(rest, histories["0.1 g: holds together"])  # loads the kernels
         runs: dict[str, list[tuple[float, float]]] = {name: [] for name in MOTIONS}
         for _ in range(RUNS):
             for name, history in histories.items():
@@ -64,7 +64,7 @@ def measured() -> list[tuple[int, float, dict[str, float]]]:
 
 
 def chart(rows: list[tuple[int, float, dict[str, float]]]) -> Figure:
-    """Both axes in powers of ten, with real time and three times it."""
+    """Draw the cost on logarithmic axes, with lines at one and three processor seconds per second."""
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     axes = figure.add_subplot()
     blocks = [row[0] for row in rows]

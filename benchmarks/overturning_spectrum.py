@@ -1,6 +1,6 @@
-"""Overturning spectrum of a block under pulses of the ground beside Housner's equation: a table and a chart.
+"""Overturning spectrum of a block under ground pulses, beside that of Housner's equation: a table and a chart.
 
-``PYTHONPATH=. python benchmarks/overturning_spectrum.py [chart.png]``; some minutes.
+``PYTHONPATH=. python benchmarks/overturning_spectrum.py [chart.png]`` takes some minutes.
 """
 
 import math
@@ -16,7 +16,7 @@ from tests.response.walls import block, resting, shaken, still
 
 BLOCK = HousnerBlock()
 UNIT = GRAVITY * BLOCK.b / BLOCK.h
-EDGES = {  # ω / p, and about where what a block does changes
+EDGES = {  # by number of cycles: ω / p, and approximate amplitude in g tan α at which the verdict changes
     0.5: ((1, 1.32), (2, 1.80), (4, 2.80), (6, 3.80), (8, 4.78)),
     1.0: ((2, 1.22), (3, 1.40), (4, 1.78), (4, 5.02), (4, 5.32), (6, 4.57), (6, 8.55), (6, 9.70)),
 }
@@ -24,7 +24,7 @@ NAMES = {0.5: "half-sine", 1.0: "sine"}
 
 
 def spectrum() -> list[tuple[float, float, float, float]]:
-    """Cycles, ω / p, and the edges of Housner's block and of ours, in g tan α."""
+    """Cycles, ω / p, and amplitudes in g tan α at which the verdict changes, for Housner's block and `dem-dynamic`."""
     rest = resting(block(BLOCK.b, BLOCK.h, still()))
     found: list[tuple[float, float, float, float]] = []
     for cycles, edges in EDGES.items():
@@ -47,7 +47,7 @@ def spectrum() -> list[tuple[float, float, float, float]]:
 
 
 def curves(cycles: float) -> list[tuple[float, float, bool]]:
-    """ω / p and scales at which the verdict on Housner's block changes, and whether it falls above."""
+    """ω / p and amplitudes at which the verdict on Housner's block changes, and whether it overturns above."""
     found = []
     for ratio in np.linspace(1.0, 8.0, 15):
         period = 2 * math.pi / (ratio * BLOCK.p)
@@ -65,7 +65,7 @@ def curves(cycles: float) -> list[tuple[float, float, bool]]:
 
 
 def chart(found: list[tuple[float, float, float, float]], path: str) -> None:
-    """Draw ours on Housner's."""
+    """Draw the results of `dem-dynamic` over the spectrum by Housner's equation."""
     figure = Figure(figsize=(8.4, 3.8), layout="constrained", dpi=160)
     for axes, cycles in zip(figure.subplots(1, 2, sharey=True), EDGES, strict=True):
         edges = curves(cycles)

@@ -1,4 +1,4 @@
-"""Write and draw one moment of a wall of 20 000 blocks: median and spread of five, after one to warm up."""
+"""Write and draw one moment of a wall of 20 000 blocks: median and spread of five runs, after one to warm up."""
 
 import statistics
 import tempfile
@@ -30,14 +30,14 @@ RUNS = 6
 
 
 def sheared(scene: Scene) -> Outcome:
-    """A wall whose courses have slid one on the other, the farther up the farther."""
+    """Outcome in which the courses have slid on each other, in proportion to their height."""
     height = np.where(scene.wall, scene.blocks.centroid[:, 1], 0.0)
     motion = fastest_corner_by_one(scene.blocks, height[:, None] * np.array([1.0, 0.0, 0.0]))
     return Outcome("20 000 blocks", "limit", "collapse", 0.3, motion=motion)
 
 
 def timed(action: Callable[[], object]) -> str:
-    """Median and spread of the seconds that something takes."""
+    """Median and spread of the seconds of an action, as text."""
     seconds = []
     for _ in range(RUNS):
         start = time.perf_counter()
@@ -48,7 +48,7 @@ def timed(action: Callable[[], object]) -> str:
 
 
 def main() -> None:
-    """Print what it takes."""
+    """Print the times."""
     scene = scene_from_dict(WALL)
     outcome = sheared(scene)
     frame = mechanism_frame(scene, outcome)
@@ -67,12 +67,12 @@ def main() -> None:
 
 
 def write(scene: Scene, frame: Frame, folder: Path) -> None:
-    """Write one moment of a series of its own."""
+    """Write one moment as a time series."""
     TimeSeries(Discretisation.of_rigid_blocks(scene), folder).add(frame)
 
 
 def draw(scene: Scene, outcome: Outcome, painter: Painter, path: Path) -> None:
-    """Draw and write a picture of a mechanism."""
+    """Draw a mechanism and write the picture."""
     write_atomically(path, to_png(mechanism_figure(scene, outcome, painter)))
 
 

@@ -1,4 +1,4 @@
-"""Read and join a wall of 20 000 blocks: median and spread of five runs."""
+"""Read a wall of 20 000 blocks and find its joints: median and spread of five runs."""
 
 import statistics
 import tempfile
@@ -34,7 +34,7 @@ def timed(path: Path) -> tuple[float, Scene]:
 
 
 def main() -> None:
-    """Print what it takes."""
+    """Print the times."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "wall.toml"
         path.write_text(WALL)

@@ -1,9 +1,9 @@
-"""`dem-static` on large running-bond walls: bracket beside λ of `limit`, cost, and a system beside a sparse one.
+"""`dem-static` on large running-bond walls: bracket beside λ of `limit`, cost, and cost of a linear system.
 
     python benchmarks/static_large.py [BLOCKS …]
 
-Processor seconds, medians of runs made in turn. The last columns are milliseconds of one linear system, dissected and
-by a library's sparse factors (`static_pushover`).
+Prints processor seconds, medians of several runs. The last columns are milliseconds of one linear system, by nested
+dissection and by a library's sparse factorisation (`static_pushover`).
 """
 
 import statistics
@@ -23,14 +23,14 @@ RUNS = 3
 
 
 def timed(scene: Scene) -> tuple[Outcome, float]:
-    """Outcome, and processor seconds."""
+    """Outcome of `dem-static`, and processor seconds."""
     start = time.process_time()
     outcome = dem_static(scene)
     return outcome, time.process_time() - start
 
 
 def main(sizes: list[int]) -> None:
-    """Print a row a wall."""
+    """Print one row per wall."""
     timed(stiff(300))  # loads the kernels
     print("blocks   limit    lower    upper  status     systems       [s]  [ms] each      own   sparse")
     for size in sizes:
@@ -47,7 +47,7 @@ def main(sizes: list[int]) -> None:
 
 
 def stiff(size: int) -> Scene:
-    """The panel of `limit_large` on mortar of 1 GPa, 10 mm thick."""
+    """The panel of `limit_large` with mortar of 1 GPa, 10 mm thick."""
     scene = wall(*SIZES[size])
     return scene.with_joint(elasticity=Mortar(1e9, 0.2, 0.01))
 

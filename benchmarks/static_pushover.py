@@ -1,6 +1,6 @@
-"""`dem-static` on every published wall: its bracket, that with other load steps, and what they cost.
+"""`dem-static` on every published wall: its bracket, the bracket with half the first load step, and the cost.
 
-Then a linear system as it is solved, dissected, beside a sparse one.
+Also the time of a linear system by nested dissection, as in the model, and by a sparse factorisation.
 """
 
 import argparse
@@ -29,14 +29,14 @@ def cpu() -> float:
 
 
 def bracket(outcome: Outcome) -> str:
-    """Bracket as it is printed."""
+    """Bracket as text."""
     return " – ".join(
         "?" if x is None else f"{x:.4f}" if x < 10 else f"{x:.0f}" for x in (outcome.lower, outcome.upper)
     )
 
 
 def pushover(scene: Scene, runs: int) -> str:
-    """Row of a scene in the table."""
+    """Cells of a scene in the table."""
     outcomes, spent = [], []
     for _ in range(runs):
         before = cpu()
@@ -51,7 +51,7 @@ def pushover(scene: Scene, runs: int) -> str:
 
 
 def median_ms(call: Callable[[], object]) -> float:
-    """Median milliseconds of a call."""
+    """Median milliseconds of a call, of `SYSTEMS` repetitions."""
     taken = []
     for _ in range(SYSTEMS):
         start = time.perf_counter()
@@ -61,7 +61,7 @@ def median_ms(call: Callable[[], object]) -> float:
 
 
 def linear_system(system: StaticSystem) -> str:
-    """Milliseconds of a linear system, assembled and solved anew, and of sparse factors of it alone."""
+    """Milliseconds to assemble, factorise and solve a linear system, and to factorise it alone as a sparse matrix."""
     law, equations = system.law, system.equilibrium
     joints = equations.opening @ diags_array(law.normal_stiffness) @ equations.opening.T
     joints += equations.slip @ diags_array(law.shear_stiffness) @ equations.slip.T
@@ -69,14 +69,14 @@ def linear_system(system: StaticSystem) -> str:
     order = np.argsort(splu(matrix, permc_spec="MMD_AT_PLUS_A").perm_c)
     sorted_matrix = csc_array(matrix[order][:, order])
     right = np.ones(system.unknowns)
-    stiffer = count(1)  # a tangent that has not changed is not factorised again
+    stiffer = count(1)  # an unchanged tangent would not be factorised again
     own = median_ms(lambda: system.solve(next(stiffer) * system.elastic, Control(0.0, multiplier=True), right))
     sparse = median_ms(lambda: splu(sorted_matrix, permc_spec="NATURAL", options={"SymmetricMode": True}))
     return f"{own:8.2f} {sparse:8.2f}"
 
 
 def main() -> None:
-    """Print a row a wall."""
+    """Print one row per wall."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("walls", nargs="*", help="published walls, all by default")
     parser.add_argument("--runs", type=int, default=3, help="runs of which times are the median")

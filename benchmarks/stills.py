@@ -1,4 +1,4 @@
-"""Stills of a fall: a wall with a door under a sine of its ground, by `dem-dynamic`.
+"""Stills of a fall: a wall with a door under a sine pulse of the ground, by `dem-dynamic`.
 
 python benchmarks/stills.py [docs/ground-motion-fall.png]
 """
@@ -18,14 +18,14 @@ from runningbond.pictures.flat import line_width, paint_mechanism
 from runningbond.scene import Array, Scene
 
 SCALE, MOMENTS, AFTER = 1.0, (0.6, 1.0, 1.3, 1.6), 0.2
-"""λ, and times that are drawn [s]."""
+"""λ, times that are drawn [s], and time followed after the first block has fallen [s]."""
 
 WIDTH = 8.4
-"""Of the picture [in]."""
+"""Width of the picture [in]."""
 
 
 def wall() -> rb.Wall:
-    """Blocks of 500 × 250 mm around a door under a lintel."""
+    """A wall of blocks of 500 × 250 mm with a door under a lintel."""
     return rb.Wall.running_bond(
         length=3.0,
         height=2.5,
@@ -43,7 +43,7 @@ def wall() -> rb.Wall:
 
 
 def moment(scene: Scene, motion: Array) -> DeformedShape:
-    """Blocks that have moved by ``(nb, 3)`` [m, m, rad], to any size, as they stand."""
+    """Shape of the wall after motions of any size, ``(nb, 3)`` [m, m, rad], drawn to scale."""
     shape = DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), np.int64), 0.0)
     block = np.repeat(shape.block, np.diff(shape.first))
     arm, (u, v, spin) = shape.points - scene.blocks.centroid[block], motion[block].T
@@ -52,7 +52,7 @@ def moment(scene: Scene, motion: Array) -> DeformedShape:
 
 
 def main() -> None:
-    """Follow, and draw."""
+    """Compute the response and draw the stills."""
     masonry, film = wall(), list[tuple[float, Array]]()
 
     def observe(run: Run, state: State, _: float) -> None:

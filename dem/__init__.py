@@ -1,4 +1,4 @@
-"""Rigid blocks: load by load (`dem.static`), in motion (`dem.dynamic`), and their limit (`runningbond.limit`)."""
+"""Rigid blocks: static load paths (`dem.static`), dynamics (`dem.dynamic`), limit analysis (`runningbond.limit`)."""
 
 from runningbond.limit import limit, limit_nonassociated
 

@@ -1,10 +1,10 @@
-"""Linear systems of one pattern by nested dissection (George 1973).
+"""Sparse linear systems of one pattern, solved by nested dissection (George 1973).
 
-Blocks are parted by a line of blocks across them, and the parts again, down to a few blocks. Parts are eliminated
-first, then the lines between them, each as a dense front. From one system to the next few joint points open, close,
-slip or stick: only fronts that hold one of these, and those above, are factorised anew. Sums have one order, whatever
-vector registers there are: a library's factors differ in their last bits from machine to machine, and the path of a
-wall of many blocks with them.
+A line of blocks splits the wall into two parts, which are split again, down to a few blocks. The unknowns of the parts
+are eliminated first, then those of the lines between them, each as a dense front. From one system to the next, only few
+joint points open, close, slip or stick: only the fronts that hold such a point, and the fronts above them, are
+factorised again. Sums have a fixed order, whatever the vector registers: the factors of a library differ in their last
+bits from machine to machine, and with them the load path of a wall of many blocks.
 """
 
 from dataclasses import dataclass
@@ -17,36 +17,36 @@ from runningbond.scene import Array, Indices, Unsigned
 
 from .front_kernels import Fronts, factorise, renew, substitute
 
-FEW = 6
-"""Blocks that are not parted any further."""
+LEAF_BLOCKS = 6
+"""Largest number of blocks that is not split any further."""
 
 
 @dataclass(eq=False)
 class Dissection:
-    """A matrix that is the sum of joint points' tangents and of constant terms, and its factors."""
+    """A matrix, as the sum of the joint points' tangents and of constant terms, and its factors."""
 
     fronts: Fronts
-    place: Indices  # (n,) place of each unknown in the order of elimination
-    front: Indices  # (np, 2) fronts that the two blocks at each point are eliminated in, their number for a held block
-    jump: Array  # (np, 2, 6) jumps of the points per freedom
-    # (np, 36) where the tangents of the points stand among the terms; the last term is of nothing, for held blocks
+    place: Indices  # (n,) position of each unknown in the order of elimination
+    front: Indices  # (np, 2) fronts that eliminate the two blocks at each point; the number of fronts for a held block
+    jump: Array  # (np, 2, 6) jumps of the points per freedom of their two blocks
+    # (np, 36) index of the points' tangent entries among the terms; the last term is a dummy, for held blocks
     slot: Unsigned
-    terms: Array  # (n_terms + 1,) of which the store has the factors
-    tangent: Array  # (np, 2, 2) likewise
+    terms: Array  # (n_terms + 1,) terms of the matrix whose factors are in the store
+    tangent: Array  # (np, 2, 2) tangents of the points in that matrix
     store: Array
-    is_new: bool = True  # whether the store has no factors yet
+    is_new: bool = True  # whether the store holds no factors yet
 
     def solve(self, tangent: Array, right: Array) -> Array:
-        """Solve with tangents ``(np, 2, 2)`` of the joint points for some right-hand sides ``(n, k)``.
+        """Solve with tangents ``(np, 2, 2)`` of the joint points for right-hand sides ``(n, k)``.
 
         Raises
         ------
         numpy.linalg.LinAlgError
-            For a matrix of which a front is singular to the last bit.
+            If a front of the matrix is exactly singular.
         """
         changed = np.full(len(self.fronts.above) + 1, self.is_new)
         renew(tangent, self.tangent, self.jump, self.front, self.slot, changed, self.terms)
-        self.tangent, self.is_new = tangent, True  # should a front be singular
+        self.tangent, self.is_new = tangent, True  # stays so if a front is singular
         if not factorise(self.fronts, changed, self.terms, self.store):
             raise np.linalg.LinAlgError("singular tangent")
         self.is_new = False
@@ -59,18 +59,18 @@ class Dissection:
 def dissection(
     row: Indices, column: Indices, home: Indices, position: Array, jump: Array, constant: Array
 ) -> Dissection:
-    """Dissect a pattern.
+    """Set up the fronts of a sparsity pattern.
 
     Parameters
     ----------
     row, column : (n_terms,) int
-        Unknowns that each term couples; negative for terms that are left out.
+        Unknowns that each term couples; negative for terms to be left out.
     home : (n,) int
-        Block of each unknown, which is eliminated with it.
+        Block of each unknown; all unknowns of a block are eliminated together.
     position : (nb, 2) float
         Centroids of the blocks [m].
     jump : (np, 2, 6) float
-        Jumps of the joint points, whose 6 × 6 tangents are the first terms.
+        Jumps of the joint points per freedom; their 6 × 6 tangents are the first terms.
     constant : (n_constant,) float
         The other terms.
     """
@@ -90,7 +90,7 @@ def dissection(
     s, u, n = np.diff(own), np.diff(begin), len(home)
 
     def local(front: Indices, unknown: Indices) -> Indices:
-        """Place of unknowns in fronts."""
+        """Position of unknowns within fronts."""
         after = np.searchsorted(number * n + joined, front * n + unknown) - begin[front] + s[front]
         return np.asarray(np.where(unknown < own[front + 1], unknown - own[front], after))
 
@@ -117,7 +117,7 @@ def dissection(
 
 
 def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:
-    """Blocks of each front, those below a front before it, and the front above each, −1 for the last ones."""
+    """Blocks of each front, children before their parent, and the front above each, −1 for the top ones."""
     parts: list[Indices] = []
     above: list[int] = []
 
@@ -129,7 +129,7 @@ def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:
         return [len(parts) - 1]
 
     def divide(blocks: Indices) -> list[int]:
-        if len(blocks) <= FEW:
+        if len(blocks) <= LEAF_BLOCKS:
             return front(blocks, []) if len(blocks) else []
         halves = []
         for along in (0, 1):
@@ -146,7 +146,7 @@ def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:
 
 
 def _left(graph: csr_array, parts: list[Indices], above: Indices, rank: Indices) -> list[Indices]:
-    """Ranks of the blocks that each front leaves to those above it, in order."""
+    """Sorted ranks of the blocks that each front passes on to the fronts above it."""
     end = np.cumsum([len(part) for part in parts])
     below: list[list[Indices]] = [[np.zeros(0, dtype=np.int64)] for _ in parts]
     left = []

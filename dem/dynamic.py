@@ -1,9 +1,9 @@
-"""Model ``dem-dynamic``: rigid blocks by molecular dynamics, each load held until the wall rests or falls.
+"""Model ``dem-dynamic``: explicit dynamics of rigid blocks, each load held until the wall rests or falls.
 
-The paper's first solver (Sec. 3): explicit central differences of every block's motion, Coulomb's law on the joint
-forces. Damping only serves to come to rest: local damping, which does not know the wall's frequencies, and a little
-stiffness-proportional viscosity, without which sliding contacts chatter and local damping drags on the chatter
-until a collapse looks like creep.
+The paper's first solver (Sec. 3, molecular dynamics): explicit central differences of every block's motion, Coulomb's
+law on the joint forces. Damping only serves to bring the wall to rest: local damping, which does not depend on the
+wall's frequencies, and a little stiffness-proportional viscosity. Without the latter, sliding contacts chatter, and
+local damping acts on the chatter until a collapse looks like creep.
 """
 
 import time
@@ -46,23 +46,23 @@ def dem_dynamic(
     distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its rigid blocks; where its ground moves, as `critical_scale` finds it.
+    """Find the collapse load of a scene by rigid-block dynamics; if its ground moves, the scale by `critical_scale`.
 
     Parameters
     ----------
     scene
-        The scene; its joints need a stiffness, on which the collapse load hardly depends.
+        The scene; its joints need a stiffness, which barely affects the collapse load.
     tolerance, collapse, first_step, budget, distance, observe
         As in `collapse_by_steps`.
     displacements
-        Whether a wall that is led by its beam or by a support, or pushed by live loads, is followed through finite
-        displacements: blocks turn, slide off their neighbours and come to rest on others, and softening joints break
-        (`finite_system`). A push goes on past its peak.
+        Whether a wall that is driven by its beam or by a support, or pushed by live loads, is followed through finite
+        displacements: blocks rotate, slide off their neighbours and come to rest on others, and softening joints break
+        (`finite_system`). A push continues past its peak.
 
     Returns
     -------
     Outcome
-        As of `collapse_by_steps`.
+        As from `collapse_by_steps`.
     """
     check_scene(scene)
     if scene.history:
@@ -93,9 +93,9 @@ def dem_dynamic(
 
 
 def quasi_static_run(scene: Scene) -> Run:
-    """Rigid blocks at small displacements under loads that grow slowly, for which their inertia does not matter.
+    """Set up rigid blocks at small displacements under slowly growing loads, for which their inertia does not matter.
 
-    What leads a wall does so at a speed that goes by usual time steps, and blocks have theirs.
+    The speed of a driven beam or support follows from the usual time step: such a wall keeps its true masses and step.
     """
     system = rigid_system(scene)
     if scene.is_led:
@@ -104,7 +104,7 @@ def quasi_static_run(scene: Scene) -> Run:
 
 
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
-    """Response of a scene's rigid blocks to the motion of its ground, λ times as large; settings as of `follow`."""
+    """Response of a scene's rigid blocks to its ground motion times `scale`; settings as for `follow`."""
     return follow(Resting.of(scene, "dem-dynamic", finite_system(with_impacts(scene))), scale, **settings)
 
 

@@ -1,7 +1,7 @@
-"""The largest frequency of rigid blocks on contacts at finite displacements: a bound, and by Lanczos' method.
+"""Largest frequency of rigid blocks on contacts at finite displacements: a bound, and an estimate by Lanczos' method.
 
-The bound, from each block alone, is too large where several move together. A few steps of Lanczos' method come from
-below to a hundredth of ω, whatever the wall: a tenth of what a stable step is shortened by.
+The bound is taken block by block and is too large where several blocks move together. A few steps of Lanczos' method
+approach ω from below to within a hundredth, for any wall: a tenth of the safety margin of a stable step.
 """
 
 import numpy as np
@@ -12,37 +12,37 @@ from runningbond.dynamics.highest_frequency import largest_of_tridiagonal
 from runningbond.joints.compiled import kernel
 from runningbond.scene import Array, Indices
 
-STEPS = 16
-"""Steps of Lanczos' method."""
+LANCZOS_STEPS = 16
+"""Number of steps of Lanczos' method."""
 
 DIGITS = 9
-"""Digits that are kept: far more than time steps ask for, with the `SAFETY` that they have."""
+"""Significant digits that are kept: far more than time steps need, given their `SAFETY`."""
 
 
 def frequencies_squared(sides: RigidSides, normal: Array, shear: Array, mass: Array) -> tuple[float, float]:
-    """Bound of the largest ω² [1/s²] with every contact closed, and that to a hundredth.
+    """Bound of the largest ω² [1/s²] with every contact closed, and the Lanczos estimate of it.
 
-    The sides are as `gather_sides` placed them, their ends have stiffnesses ``(n,)`` [Pa/m], and the masses are modal
-    ones ``(3 nb,)``.
+    The sides are placed by `gather_sides`, the stiffnesses ``(n,)`` [Pa/m] are those of their ends, and the masses
+    ``(3 nb,)`` are modal.
     """
     block = sides.corners.freedom[sides.ends[:, :2]] // THREE
     share, rows = joint_shares(mass[::3][block], 0.5), np.zeros((len(normal), 12))
     own, root = np.zeros((len(mass) // 3, 3, 3)), 1 / np.sqrt(mass)
     _rows(tuple(sides), normal, shear, root, share, rows, own)
-    # Without a pattern that a mode of the wall could be at right angles to.
+    # A random start vector is orthogonal to no mode of the wall.
     start = np.random.default_rng(0).standard_normal(len(mass)) * (root > 0)
-    diagonal, beside = np.zeros((2, STEPS))
+    diagonal, beside = np.zeros((2, LANCZOS_STEPS))
     _lanczos(rows, 3 * block, start / np.linalg.norm(start), diagonal, beside)
     bound, found = float(np.linalg.eigvalsh(own).max()), largest_of_tridiagonal(diagonal, beside)
-    # A library's last digits differ from machine to machine, and blocks that bounce tell the last one of a time step.
+    # A library's last digits differ from machine to machine, and bouncing blocks amplify that of a time step.
     return float(f"{bound:.{DIGITS}g}"), float(f"{found:.{DIGITS}g}")
 
 
 @kernel
 def _rows(sides: RigidSides, normal: Array, shear: Array, root: Array, share: Array, rows: Array, own: Array) -> None:
-    """Opening, then slip of ends per motion of block b and of block a, in roots of stiffness and mass ``(n, 12)``.
+    """Write opening, then slip of ends per motion of blocks b and a, times √(stiffness / mass), ``(n, 12)``.
 
-    And the stiffness ``(nb, 3, 3)`` of each block against its share ``(n, 2)`` of its ends, in its masses.
+    Also sum up the mass-scaled stiffness ``(nb, 3, 3)`` of each block, with its `share` ``(n, 2)`` of its ends.
     """
     corners, _, _, ends, _, _, area, placed, contact, _, _ = sides
     for k in range(normal.size):
@@ -67,7 +67,7 @@ def _rows(sides: RigidSides, normal: Array, shear: Array, root: Array, share: Ar
 
 @kernel
 def _lanczos(rows: Array, freedom: Indices, v: Array, diagonal: Array, beside: Array) -> None:
-    """Write the tridiagonal matrix of some steps from a unit vector ``(3 nb,)``."""
+    """Write the tridiagonal matrix of Lanczos steps from a unit start vector ``(3 nb,)``."""
     before, after = np.zeros_like(v), np.zeros_like(v)
     for step in range(diagonal.size):
         for i in range(v.size):

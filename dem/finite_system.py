@@ -1,4 +1,4 @@
-"""Rigid blocks at finite displacements, whose contacts are found anew as they move."""
+"""Rigid blocks at finite displacements, with contact detection as they move."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -30,12 +30,12 @@ from .rigid_system import contact_points, held_masses, system_on
 
 
 def finite_system(scene: Scene) -> BlockSystem:
-    """Set up the rigid blocks of a scene, three freedoms a block, to move far.
+    """Set up the rigid blocks of a scene, three freedoms a block, for finite displacements.
 
     Raises
     ------
     SceneError
-        As of `check_finite`, `ContactMaterials` and `Outline.of`.
+        As from `check_finite`, `ContactMaterials` and `Outline.of`.
     """
     check_finite(scene)
     contacts = RigidContacts(scene)
@@ -58,12 +58,12 @@ class RigidContacts:
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 
     def find(self, motion: Array, margin: float) -> Contacts:
-        """Contacts nearer than a margin [m] after a motion ``(3 nb,)``, material by material."""
+        """Contacts closer than a margin [m] after a motion ``(3 nb,)``, grouped by material."""
         contacts = find_contacts(self.outline, motion, margin)
         return self._materials.side_by_side(contacts)
 
     def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
-        """The interface of the blocks on contacts."""
+        """Interface of the blocks on given contacts."""
         ends = contacts.gathered(self.outline, contacts.motion)
         if not self._points:
             law = self._materials.law(contacts)
@@ -73,7 +73,7 @@ class RigidContacts:
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
         normal, shear = np.zeros((2, len(contacts)))
-        # The points' consistent stiffness is not more than that of their ends alone.
+        # The consistent stiffness of the points does not exceed that of their ends alone.
         for of_ends, of_points in ((normal, law.stiffest), (shear, law.shear_stiffness)):
             of_ends[pairs] = of_points[: len(pairs), None]
         geometry, area = along(ends, pairs, contacts.area, self._rule)
@@ -82,22 +82,22 @@ class RigidContacts:
         return Interface(law, area, *kernels, geometry, *self._frequencies(ends, normal, shear), reframe)
 
     def _frequencies(self, ends: RigidSides, normal: Array, shear: Array) -> tuple[float, float | None]:
-        """The bound of the frequency, and a closer value where the ground moves."""
+        """Bound of the largest ω², and a closer value if the ground moves."""
         bound, closer = frequencies_squared(ends, normal, shear, self._mass)
         return bound, closer if self._scene.history else None
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
-        """A key of each point of the interface on contacts, and the end that it is or −1, two ``(np,)``."""
+        """Key of each point of the interface on contacts, and the contact end at it or −1; two ``(np,)``."""
         return contacts.points(self._points)
 
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
-        """As of `ContactSearch`, at `contact_points`."""
+        """Values at `contact_points` from those at the contacts' points, as in `ContactSearch`."""
         at = position_of(self.points(contacts)[0], self._key_of_point)
-        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
-        return np.column_stack([values, lost])[:, at]  # -1, of those that are none, is the last
+        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])  # a lost point is open by at least the margin
+        return np.column_stack([values, lost])[:, at]  # index -1, for points that are lost, is the last column
 
     def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """As of `ContactSearch`; a point along two sides pulls as its shares at the two ends would."""
+        """Forces in space as in `ContactSearch`; a point between two ends pulls as its shares at these ends would."""
         ends = contacts.gathered(self.outline, motion)
         if not self._points:
             pull, shear = turn_out.py_func(*force, ends.out)
@@ -110,7 +110,7 @@ class RigidContacts:
         return along
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """As of `ContactSearch`."""
+        """Forces on each body and their moments, as in `ContactSearch`."""
         ends = contacts.gathered(self.outline, motion)
         if self._points:
             pairs, share = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2
@@ -121,7 +121,7 @@ class RigidContacts:
 
     @cached_property
     def _key_of_point(self) -> Indices:
-        """Key of the contact's point at each of `contact_points` on the undeformed wall."""
+        """Key of the contact point at each of `contact_points` on the undeformed wall."""
         contacts, points = self.undeformed, contact_points(self._scene)
         key, _ = self.points(contacts)
         ends = contacts.gathered(self.outline, contacts.motion)
@@ -138,10 +138,10 @@ class RigidContacts:
         return found
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
-        """A number of the corner that rests and the side it rests on, for each contact."""
+        """Number that identifies the resting corner and the side under it, for each contact."""
         corner, side = resting(self.outline, contacts, motion)
         return corner * 2**32 + side
 
     def deformation(self, motion: Array) -> float:
-        """Nothing: the blocks are rigid."""
+        """Zero, because the blocks are rigid."""
         return 0.0

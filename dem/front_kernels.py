@@ -1,8 +1,8 @@
-"""Fronts of a nested dissection as compiled kernels: factors anew where something changed, and solutions with them.
+"""Compiled kernels for the fronts of a nested dissection: partial refactorisation and substitution.
 
-With s unknowns that a front eliminates and u that it leaves to the fronts above it, the store keeps of it, one after
-the other and row by row, A₁₁⁻¹ (s, s), −A₁₁⁻¹ A₁₂ (s, u), A₂₁ (u, s), and what it adds above, A₂₂ − A₂₁ A₁₁⁻¹ A₁₂
-(u, u), with A₂₂ the sum of what the fronts below add there.
+A front eliminates s unknowns and passes u unknowns on to the fronts above it. For each front the store keeps, one after
+the other and row by row, A₁₁⁻¹ (s, s), −A₁₁⁻¹ A₁₂ (s, u), A₂₁ (u, s), and its update of the front above,
+A₂₂ − A₂₁ A₁₁⁻¹ A₁₂ (u, u), where A₂₂ is the sum of the updates from the fronts below.
 """
 
 from typing import NamedTuple
@@ -16,29 +16,29 @@ kernel, copy_into = compiled.kernel, compiled.copy_into
 
 
 class Fronts(NamedTuple):
-    """Fronts, those below a front before it."""
+    """Fronts in the order of elimination: those below a front come before it."""
 
-    own: Indices  # (nf + 1,) first unknown that each front eliminates, unknowns in the order of their elimination
+    own: Indices  # (nf + 1,) first unknown that each front eliminates, with unknowns in the order of elimination
     begin: Indices  # (nf + 1,) first entry of `left` of each front
-    left: Unsigned  # unknowns that each front leaves to those above it, in order
-    place: Unsigned  # and what place they have in the front above, its own unknowns first
-    above: Indices  # (nf,) the front above each, −1 for the last ones
+    left: Unsigned  # unknowns that each front passes on to the fronts above it, in order
+    place: Unsigned  # their positions in the front above, whose own unknowns come first
+    above: Indices  # (nf,) the front above each, −1 for the top ones
     first: Indices  # (nf + 1,) first entry of `below` of each front
-    below: Indices  # fronts right below each
+    below: Indices  # fronts directly below each
     at: Indices  # (nf + 1,) first entry of each front in the store
-    term: Indices  # (nf + 1,) first of the terms of each front
-    address: Unsigned  # (n_terms,) where in the store each of these is added
+    term: Indices  # (nf + 1,) first term of each front
+    address: Unsigned  # (n_terms,) index in the store to which each term is added
 
 
 @kernel
 def renew(
     tangent: Array, last: Array, jump: Array, front: Indices, slot: Unsigned, changed: Mask, terms: Array
 ) -> None:
-    """Terms of joint points whose tangents ``(np, 2, 2)`` are not the last ones; their fronts have changed.
+    """Update the terms of joint points whose tangents ``(np, 2, 2)`` have changed, and mark their fronts as changed.
 
-    ``slot`` ``(np, 36)`` is where each of a point's terms stands among `terms`.
+    ``slot`` ``(np, 36)`` is the index of each of a point's terms among `terms`.
     """
-    # Entry by entry: views of so few numbers cost more than what is done with them.
+    # Entry by entry: views of so few numbers cost more than the arithmetic on them.
     for p in range(len(tangent)):
         nn, ns, sn, ss = tangent[p, 0, 0], tangent[p, 0, 1], tangent[p, 1, 0], tangent[p, 1, 1]
         if nn == last[p, 0, 0] and ns == last[p, 0, 1] and sn == last[p, 1, 0] and ss == last[p, 1, 1]:
@@ -53,9 +53,9 @@ def renew(
 
 @kernel
 def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool:
-    """Eliminate the unknowns of changed fronts ``(nf,)`` and, which are marked then, of those above them.
+    """Factorise again the changed fronts ``(nf + 1,)`` and the fronts above them, which are marked as changed too.
 
-    False where a front is singular.
+    Return False if a front is singular.
     """
     own, begin, _, place, above, first, below, at, term, address = fronts
     for f in range(above.size):
@@ -89,15 +89,15 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool
 
 @kernel
 def _left_by(store: Array, end: int, n: int) -> Array:
-    """What a front leaves, ``(n, n)``, the last of what the store keeps of it."""
+    """Update ``(n, n)`` that a front passes on: the last of its entries in the store."""
     return store[end - n * n : end].reshape((n, n))
 
 
 @kernel
 def _invert(matrix: Array) -> bool:
-    """Invert a matrix ``(s, s)`` in place, by Gauss and Jordan with the largest pivot of each column.
+    """Invert a matrix ``(s, s)`` in place by Gauss–Jordan elimination with partial (row) pivoting.
 
-    False where there is none.
+    Return False if it is singular.
     """
     s = len(matrix)
     order = np.arange(s)
@@ -133,11 +133,11 @@ def _invert(matrix: Array) -> bool:
 
 @kernel
 def _add_product(left: Array, right: Array, out: Array) -> None:
-    """Add a product of matrices ``(r, k)`` and ``(k, n)`` to a matrix ``(r, n)``, in one order of sums."""
+    """Add the product of matrices ``(r, k)`` and ``(k, n)`` to a matrix ``(r, n)``, in a fixed order of sums."""
     rows, terms = left.shape
     n = right.shape[1]
     quads, paired, fours = rows - rows % 4, rows - rows % 2, terms - terms % 4
-    for r in range(0, quads, 4):  # four rows and four terms at once: what is read serves sixteen products
+    for r in range(0, quads, 4):  # four rows and four terms at once, to reuse the values that are read
         for k in range(0, fours, 4):
             a, b, c, d = left[r, k], left[r, k + 1], left[r, k + 2], left[r, k + 3]
             e, f, g, h = left[r + 1, k], left[r + 1, k + 1], left[r + 1, k + 2], left[r + 1, k + 3]
@@ -163,7 +163,7 @@ def _add_product(left: Array, right: Array, out: Array) -> None:
 
 @kernel
 def _add_times(matrix: Array, vector: Array, out: Array) -> None:
-    """Add a matrix ``(r, k)`` times a vector ``(k,)``; eight sums side by side, in one order whatever the registers."""
+    """Add a matrix ``(r, k)`` times a vector ``(k,)``, as eight partial sums: a fixed order, whatever the registers."""
     rows, terms = matrix.shape
     eights = terms - terms % 8
     for r in range(rows):
@@ -184,7 +184,7 @@ def _add_times(matrix: Array, vector: Array, out: Array) -> None:
 
 @kernel
 def _add_own(update: Array, place: Unsigned, s: np.uint64, u: np.uint64, front: Array) -> None:
-    """Add what a front leaves to the own unknowns of the front above it, in rows, then to others in columns."""
+    """Add a front's update to A₁₁, A₁₂ and A₂₁ of the front above it."""
     n = place.size
     inner = np.searchsorted(place, s)
     for i in range(inner):
@@ -201,7 +201,7 @@ def _add_own(update: Array, place: Unsigned, s: np.uint64, u: np.uint64, front: 
 
 @kernel
 def _add_left(update: Array, place: Unsigned, s: np.uint64, u: np.uint64, left: Array) -> None:
-    """Add what a front leaves to what the front above it leaves as well."""
+    """Add a front's update to A₂₂ of the front above it."""
     n = place.size
     inner = np.searchsorted(place, s)
     for i in range(inner, n):

@@ -1,8 +1,8 @@
-"""Runs of alike joints: numbers for blocks and joints with which kernels walk through memory straight ahead.
+"""Runs of alike joints: a numbering of blocks and joints that lets kernels step through memory consecutively.
 
-A wall of equal blocks has few kinds of joints: what the joint of one pair of blocks is to them, the joint of the
-next pair is to those, if it is as thick. Blocks are numbered column by column, from the bottom up, and joints of one
-kind by their blocks, so that where joint j separates blocks p and q, joint j + 1 as a rule separates p + 1 and q + 1.
+A wall of equal blocks has few kinds of joints: joints of one kind have the same thickness and the same position
+relative to their two blocks. Blocks are numbered column by column, from the bottom up, and the joints of one kind by
+their blocks: if joint j separates blocks p and q, joint j + 1 usually separates p + 1 and q + 1.
 """
 
 from dataclasses import dataclass
@@ -17,20 +17,20 @@ from runningbond.scene import Array, Indices, Scene
 from .rigid_kernels import RigidJoints
 
 RESOLUTION = 1e-9
-"""Difference, in sizes of the wall, below which two joints are of one kind: far below the contact tolerance.
+"""Difference, relative to the wall's size, below which two joints are of one kind: far below the contact tolerance.
 
-And in areas of the largest joint, for they may differ in thickness.
+Areas, which differ if joints differ in thickness, are compared relative to the largest joint area.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class JointOrder:
-    """Blocks, joints and their contact points in the order of the kernels."""
+    """Blocks, joints and their contact points in the order that the kernels use."""
 
-    block: Indices  # (nb,) place of each block
-    points: JointPoints  # all joints' first points, then all second ones, and so on
+    block: Indices  # (nb,) position of each block in that order
+    points: JointPoints  # the first points of all joints, then all second ones, and so on
     runs: RigidJoints
-    between: Along | None  # where there are more than a joint's two ends: how these have the points between them
+    between: Along | None  # points between a joint's two ends; None if the ends are the only points
 
 
 def joint_order(scene: Scene) -> JointOrder:

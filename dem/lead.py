@@ -1,4 +1,4 @@
-"""What leads a wall: the displacements that its beam or its supports are taken through, and the reaction to them."""
+"""What drives a wall: prescribed displacements of its beam or its supports, and the reaction to them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,18 +13,18 @@ from runningbond.scene import Array, Scene
 from .pushover import StaticState
 from .static_system import Control, StaticSystem, dot
 
-STEPS = 25
-"""Least number of steps in the longest leg of a path."""
+MIN_STEPS = 25
+"""Smallest number of steps in the longest leg of a path, from one reversal to the next."""
 
-GROWTH = 1.3
-"""Growth of steps from one to the next."""
+STEP_GROWTH = 1.3
+"""Ratio of a step's length to that of the step before, up to the longest step."""
 
-REGULAR = 1e-6
-"""Share of the elastic stiffness by which the tangent of a first guess is made regular."""
+REGULARISATION = 1e-6
+"""Part of the elastic stiffness that open points keep in the tangent of a first guess, which makes it regular."""
 
 
 def reaction(system: StaticSystem, state: StaticState) -> float:
-    """λ, of a drive its reaction along its first move [N]; of supports that settle the share of the dead load there."""
+    """Reaction of a drive along its first move [N], or the share of the dead load on supports that settle."""
     equations, jump = system.equilibrium, system.support_jump
     if jump is None:
         return equations.live_unit * state.multiplier
@@ -34,11 +34,11 @@ def reaction(system: StaticSystem, state: StaticState) -> float:
 
 @dataclass(frozen=True, eq=False)
 class StaticLead:
-    """What leads a wall: the beam's drive, or the supports with a share of their settlement."""
+    """What drives a wall: the beam's drive, or the supports with a share of their settlement."""
 
     system: StaticSystem
     origin: StaticState  # at rest under the dead load
-    first_step: float  # load that an elastic first step is worth
+    first_step: float  # load of the first, elastic step
 
     @property
     def scene(self) -> Scene:
@@ -47,12 +47,12 @@ class StaticLead:
 
     @property
     def settles(self) -> bool:
-        """Whether supports are led, not the beam."""
+        """Whether supports are moved, not the beam."""
         return self.scene.settlement is not None
 
     @cached_property
     def metre(self) -> float:
-        """Displacement [m] that counts as 1: the settlement asked for, or the unit of f_live · q."""
+        """Displacement [m] that counts as 1: the prescribed settlement, or the unit of f_live · q."""
         if self.settles:
             moved = float(control_row(self.scene) @ self.scene.support_motion.ravel())
             return moved or largest_displacement(self.scene)
@@ -60,12 +60,12 @@ class StaticLead:
 
     @cached_property
     def joule(self) -> float:
-        """Work on the wall [J] of a force that counts as 1, on a path of 1."""
+        """Work on the wall [J] of a unit force on a path of unit length."""
         return -reaction_unit(self.scene) if self.settles else self.metre
 
     @cached_property
     def goals(self) -> Array:
-        """Values that are led to one after the other."""
+        """Prescribed values at the ends of the path's legs, in order."""
         drive = self.scene.drive
         if self.scene.settlement is not None:
             return np.array(self.scene.settlement.path)
@@ -73,7 +73,7 @@ class StaticLead:
 
     @cached_property
     def elastic_step(self) -> float:
-        """First step, of a wall that has not opened anywhere."""
+        """Length of the first step: the displacement of the elastic, closed wall under the load `first_step`."""
         system = self.system
         if system.support_jump is not None:
             return self.first_step / float(np.abs(system.support_jump).max())
@@ -82,43 +82,43 @@ class StaticLead:
         return abs(dot(system.equilibrium.live, step[: system.freedoms]))
 
     def stops(self, share: float) -> Iterator[tuple[float, bool]]:
-        """Values to hold along the path, each with whether it begins a leg, in steps of that share's length."""
+        """Yield the values to hold along the path, each with whether it begins a leg; `share` scales the steps."""
         at, goals = 0.0, self.goals
-        longest = np.abs(np.diff(goals, prepend=0.0)).max() / STEPS
+        longest = np.abs(np.diff(goals, prepend=0.0)).max() / MIN_STEPS
         for goal in goals:
             lengths = [0.0]
             step = min(self.elastic_step, longest)
             while lengths[-1] < abs(goal - at):
                 lengths.append(lengths[-1] + share * step)
-                step = min(step * GROWTH**share, longest)
+                step = min(step * STEP_GROWTH**share, longest)
             for k, length in enumerate(lengths[1:]):
                 yield float(at + (goal - at) * length / lengths[-1]), k == 0
             at = goal
 
     def control(self, value: float) -> Control:
-        """The equation that holds a value."""
+        """Control equation that prescribes a value."""
         return Control(value if self.settles else self.origin.displacement + value, multiplier=self.settles)
 
     def value(self, state: StaticState) -> float:
-        """The value that is held in a state."""
+        """Prescribed value in a state."""
         return state.multiplier if self.settles else state.displacement - self.origin.displacement
 
     def force(self, state: StaticState) -> float:
-        """As of `reaction`."""
+        """Force in a state, as from `reaction`."""
         return reaction(self.system, state)
 
     def onward(self, before: StaticState, now: StaticState, value: float) -> Array:
-        """Unknowns ahead, if the wall goes on as in its last step."""
+        """Unknowns at a value, extrapolated linearly from the last step."""
         ahead = (value - self.value(now)) / (self.value(now) - self.value(before))
         return np.asarray(now.x + ahead * (now.x - before.x))
 
     def elastically(self, now: StaticState, value: float) -> Array:
-        """Unknowns ahead, if no point opens or slides farther."""
+        """Unknowns at a value, if no further point opens and none slides farther."""
         if self.settles:
             return np.append(now.x[:-1], value)
         response = self.system.respond(now.x, now.plastic_slip)
         pressed = (response.normal != 0)[:, None, None]
-        tangent = self.system.elastic * np.where(pressed, 1.0, REGULAR)
+        tangent = self.system.elastic * np.where(pressed, 1.0, REGULARISATION)
         ahead = self.control(value)
         right = np.append(np.zeros(self.system.unknowns - 1), ahead.value - now.displacement)
         return np.asarray(now.x + self.system.solve(tangent, ahead, right))

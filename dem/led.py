@@ -1,15 +1,15 @@
-"""Walls that are led: a beam or supports are taken through prescribed displacements, from rest to rest.
+"""Driven walls: a beam or supports follow prescribed displacements, from equilibrium to equilibrium.
 
-Each displacement is held until the wall rests, at once by Newton's method or after it has crept there
-(`relaxation`): where it snaps, it is followed to its next rest at that displacement. Steps begin with one of the
-wall's elastic size, after the dead load and after each reversal, and grow from there, so that friction is taken up
-along the path. The whole path is gone through again in steps half as long until its answer settles.
+Each displacement is held until the wall rests, found at once by Newton's method or after creep (`relaxation`): a wall
+that snaps is followed to its next equilibrium at that displacement. After the dead load and after each reversal, steps
+start at the wall's elastic size and then grow, so that friction is taken up along the path. The whole path is repeated
+in steps half as long until its answer settles.
 
 The answer is the largest reaction of a beam's drive along its first move, or the share of the dead load that supports
-bear at the settlement asked for. It is one of a collapse if a mechanism has formed: if over the last tenth of the path
-it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still sheds
-or takes up load, where the path ends, and the answer bounds the collapse from one side only. A wall at rest on a
-support that bears nothing any more bridges it.
+carry at the prescribed settlement. It is a collapse load if a mechanism has formed: if it changes by less than the
+tolerance over the last tenth of the path, or if the wall falls. Otherwise the wall still hardens, or the support still
+sheds or takes up load, where the path ends, and the answer bounds the collapse from one side only. A wall at rest on a
+support that no longer carries any load bridges that support.
 """
 
 from dataclasses import dataclass, replace
@@ -27,20 +27,20 @@ from .lead import StaticLead
 from .pushover import NOISE, LoadPath, StaticState, state_of
 from .relaxation import Rest
 
-RUNS = 4
-"""Runs, each in steps half as long as those before, after which a path is left undecided."""
+MAX_RUNS = 4
+"""Number of runs, each in steps half as long as in the run before, after which a path is left undecided."""
 
-HALVINGS = 20
-"""Steps to the fall of a wall from its last rest, each half as long as the last one."""
+BISECTIONS = 20
+"""Number of bisections of the step from the last equilibrium to the fall of a wall."""
 
 
 @dataclass(frozen=True, eq=False)
 class StaticTraverse:
-    """One traverse of the path: its states at rest, the dead load's first, and what stopped it before the end."""
+    """One traverse of the path: its states in equilibrium, from the dead load on, and what stopped it early."""
 
     states: list[StaticState]
     stopped: Rest | None = None
-    aim: float = 0.0  # value that it was led to last
+    aim: float = 0.0  # last prescribed value
 
     @property
     def fell(self) -> bool:
@@ -62,7 +62,7 @@ def _run(path: LoadPath, lead: StaticLead, share: float) -> StaticTraverse:
 
 
 def _hold(path: LoadPath, lead: StaticLead, states: list[StaticState], value: float, turns: bool) -> Rest:
-    """Hold a value after some states, the first one of a leg where the path `turns`, until the wall rests or falls."""
+    """Hold a value after some states until the wall rests or falls; `turns` marks the first value of a leg."""
     now = states[-1]
     if not turns:
         guess = lead.onward(states[-2], now, value)
@@ -72,9 +72,9 @@ def _hold(path: LoadPath, lead: StaticLead, states: list[StaticState], value: fl
 
 
 def _closer(path: LoadPath, lead: StaticLead, run: StaticTraverse, turns: bool) -> StaticTraverse:
-    """A run that ended in a fall, with the states between its last rest and there."""
+    """Add states between the last equilibrium and the fall to a run that ended in a fall."""
     states, fall, aim = [*run.states], run.stopped, run.aim
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         value = (lead.value(states[-1]) + aim) / 2
         result = _hold(path, lead, states, value, turns)
         if result.verdict == "undecided":
@@ -88,23 +88,23 @@ def _closer(path: LoadPath, lead: StaticLead, run: StaticTraverse, turns: bool) 
 
 
 def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: float) -> Outcome:
-    """Lead a wall from rest under its dead load through the displacements of its scene.
+    """Drive a wall from rest under its dead load through the prescribed displacements of its scene.
 
     Parameters
     ----------
     outcome
-        Its outcome so far.
+        Outcome so far.
     path
-        Its path with that rest; the last run is added to it, and observed.
+        Load path that starts with that state of rest; the last run is added to it, and observed.
     tolerance
         Relative width of the bracket.
     first_step
-        Load, in units of `Equilibrium`, that the first elastic step is worth.
+        Load of the first elastic step, in units of `Equilibrium`.
     """
     lead = StaticLead(path.system, path.rests[0], first_step)
     runs: list[StaticTraverse] = []
     answers: list[float] = []
-    for k in range(RUNS):
+    for k in range(MAX_RUNS):
         path.past = []
         try:
             run = _run(path, lead, 0.5**k)
@@ -130,12 +130,12 @@ def _spread(lead: StaticLead, answers: list[float]) -> float:
 
 
 def _least(lead: StaticLead) -> float:
-    """Force below which a bracket need not be relatively narrow."""
+    """Force below which the tolerance of a bracket is absolute, not relative."""
     return LITTLE if lead.settles else NOISE * lead.system.equilibrium.live_unit
 
 
 def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
-    """Curve, forces at the answer and motion there: of a settlement the whole shape, of a drive how it moves."""
+    """Add curve, forces and motion at the answer: a settlement's whole motion, a drive's last increment of motion."""
     system, states = lead.system, run.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
     most = int(force.argmax()) if not lead.settles else len(states) - 1
@@ -162,7 +162,7 @@ def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
 def _judge(
     outcome: Outcome, lead: StaticLead, runs: list[StaticTraverse], answers: list[float], tolerance: float
 ) -> Outcome:
-    """Verdict on some runs."""
+    """Outcome with the verdict on the runs and its message."""
     run, (lower, upper) = runs[-1], (min(answers[-2:]), max(answers[-2:]))
     at = f"{lead.metre * abs(run.aim):.4g} m"
     what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its path"
@@ -200,7 +200,7 @@ def _judge(
 
 
 def _notes(lead: StaticLead, outcome: Outcome) -> str:
-    """What there is to say of a cyclic drive."""
+    """Note on the reaction of a cyclic drive in the other direction; empty for others."""
     if lead.settles or lead.scene.drive is None:
         return ""
     other = -float(outcome.curve[:, 1].min())

@@ -1,7 +1,7 @@
-"""The load path of rigid blocks to their collapse: states of rest under growing loads, and past the peak.
+"""Load path of rigid blocks to their collapse: equilibria under growing loads, and past the peak.
 
-Loads are held one after the other until the wall rests or falls (`LoadPath.push`). Past the largest that it bears, the
-displacement f_live · q that does the live load's work is prescribed instead, and λ follows (`LoadPath.follow`).
+Each load is held until the wall rests or falls (`LoadPath.push`). Past the largest load that the wall carries, the
+work-conjugate displacement f_live · q of the live load is prescribed instead, and λ follows (`LoadPath.follow`).
 """
 
 import math
@@ -14,34 +14,34 @@ import numpy as np
 from runningbond.joints.stiffness import GIVES
 from runningbond.scene import Array
 
-from .relaxation import LONGEST, Rest, relax
+from .relaxation import MAX_SOLVES, Rest, relax
 from .static_system import Control, StaticSystem, dot
 
 NOISE = 1e-6
-"""Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
+"""Multiplier, in scaled units, below which the tolerance of a bracket is absolute, not relative."""
 
-EASY = 30
-"""Linear systems of a step after which the next is as long."""
+TARGET_SOLVES = 30
+"""Linear systems in a step after which the next step has the same length; fewer lengthen it, more shorten it."""
 
-LONGER, SHORTER = 1.15, 0.3
-"""Bounds of the next step's length, relative to this one's."""
+MAX_GROWTH, MIN_GROWTH = 1.15, 0.3
+"""Bounds of the next step's length, relative to the present step."""
 
-STRIDE = 0.05
-"""Longest step of prescribed displacement, relative to the displacement so far."""
+MAX_STRIDE = 0.05
+"""Longest step of the prescribed displacement, relative to the displacement so far."""
 
 ROUNDING = 1e-12
-"""Step of the displacement, relative to the displacement so far, that has no direction but rounding's."""
+"""Step of the displacement, relative to the displacement so far, below which its direction is only rounding."""
 
 ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
-"""Lengths of such a step that are tried in turn, and whether the wall may creep: only where it snaps."""
+"""Factors of such a step that are tried in turn, and whether the wall may creep then: as a last resort, to snap."""
 
 
 @dataclass(frozen=True, eq=False)
 class StaticState:
-    """A state of rest."""
+    """A state of equilibrium."""
 
     x: Array  # (n,) unknowns (q, r, λ) of the `StaticSystem`
-    plastic_slip: Array  # (np + nt,) history of the joint points and ties after it
+    plastic_slip: Array  # (np + nt,) history of the joint points and ties after this state
     force: Array  # (np, 2) normal and tangential forces of the joint points
     displacement: float  # displacement f_live · q of the live load
     pull: Array  # (nt,) forces of the ties
@@ -53,7 +53,7 @@ class StaticState:
 
 
 StaticObserver: TypeAlias = Callable[["LoadPath", StaticState], None]
-"""Looks at a state of rest as it is found, and at the path so far, and changes nothing."""
+"""Callback with each equilibrium as it is found and the path so far; it must not change them."""
 
 
 def no_observer(path: "LoadPath", state: StaticState) -> None:
@@ -62,20 +62,20 @@ def no_observer(path: "LoadPath", state: StaticState) -> None:
 
 @dataclass(eq=False)
 class LoadPath:
-    """The path of a wall to its collapse, as far as it was followed."""
+    """Load path of a wall to its collapse, as far as it has been followed."""
 
     system: StaticSystem  # the static equations
     far: float  # motion of a freedom that counts as a fall, in units of the system
     budget: int  # linear systems that may still be solved
-    rests: list[StaticState]  # states of rest under growing loads, the dead load's first
-    elastic: float = 0.0  # motion under the live load while joints neither open nor slip
+    rests: list[StaticState]  # equilibria under growing loads, that of the dead load first
+    elastic: float = 0.0  # motion under a unit live load while joints neither open nor slip
     hangs: float = 0.0  # motion until ties yield
-    past: list[StaticState] = field(default_factory=list)  # states of rest past the largest load, under displacements
-    upper: float | None = None  # smallest load under which the wall fell, or above which nothing stands
-    unclear: list[float] = field(default_factory=list)  # loads under which it neither rested nor fell
+    past: list[StaticState] = field(default_factory=list)  # equilibria past the largest load, under displacements
+    upper: float | None = None  # smallest load under which the wall fell, or that no wall exceeds
+    unclear: list[float] = field(default_factory=list)  # loads under which the wall neither rested nor fell
     undecided: str = ""  # why there is no bracket
-    fall: Array | None = None  # (nd,) how it was moving when it had fallen far enough
-    observe: StaticObserver = no_observer  # called with every state of rest under a load that is pushed for
+    fall: Array | None = None  # (nd,) motion in the last time step of the fall
+    observe: StaticObserver = no_observer  # called with every equilibrium that `push` finds
 
     @property
     def lower(self) -> float:
@@ -83,11 +83,11 @@ class LoadPath:
         return self.rests[-1].multiplier
 
     def fall_over(self, multiplier: float) -> float:
-        """Motion under a load that counts as a fall, in units of the system: more than springs alone can give."""
+        """Motion that counts as a fall under a load, in units of the system: more than springs alone can yield."""
         return max(self.far, GIVES * (self.elastic * abs(multiplier) + self.hangs))
 
-    def push(self, multiplier: float, budget: int = LONGEST) -> Rest:
-        """Hold a load larger than the last until the wall rests or falls, and note which."""
+    def push(self, multiplier: float, budget: int = MAX_SOLVES) -> Rest:
+        """Hold a load above the last one until the wall rests or falls, and record the result."""
         last = self.rests[-1]
         start = np.append(last.x[:-1], multiplier)
         result = self.hold(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
@@ -99,12 +99,12 @@ class LoadPath:
         return result
 
     def follow(self, budget: int) -> None:
-        """Find states of rest at ever larger displacements, from the last load's to a fall or the end of the budget."""
+        """Find equilibria at growing displacements, from the last load to a fall, a failed step or the budget's end."""
         if len(self.rests) < 2:
             return
         origin, before, last = self.rests[0].displacement, self.rests[-2], self.rests[-1]
         states, nd = [before, last], self.system.freedoms
-        stride = STRIDE * (last.displacement - origin)
+        stride = MAX_STRIDE * (last.displacement - origin)
         while budget > 0 and stride > 0 and np.abs(states[-1].x[:nd] - last.x[:nd]).max() < self.far:
             before, now = states[-2:]
             advance = now.displacement - before.displacement
@@ -122,13 +122,13 @@ class LoadPath:
                 break
             stride = ahead
             states.append(state_of(self.system, result))
-            stride = min(stride * lengthened(result.solves), STRIDE * (states[-1].displacement - origin))
+            stride = min(stride * lengthened(result.solves), MAX_STRIDE * (states[-1].displacement - origin))
         self.past = states[2:]
 
     def hold(
-        self, start: Array, plastic_slip: Array, control: Control, budget: int = LONGEST, creeps: bool = True
+        self, start: Array, plastic_slip: Array, control: Control, budget: int = MAX_SOLVES, creeps: bool = True
     ) -> Rest:
-        """Let the wall come to rest or fall, and count the linear systems."""
+        """Bring the wall to rest or to its fall, and count the linear systems."""
         far = self.fall_over(control.value) if control.multiplier else self.far
         result = relax(self.system, start, plastic_slip, control, far, min(budget, self.budget), creeps=creeps)
         self.budget -= result.solves
@@ -136,12 +136,12 @@ class LoadPath:
 
 
 def lengthened(solves: int) -> float:
-    """Factor of the next step after one that took some linear systems."""
-    return float(np.clip(math.sqrt(EASY / max(solves, 1)), SHORTER, LONGER))
+    """Factor of the next step's length after a step that took `solves` linear systems."""
+    return float(np.clip(math.sqrt(TARGET_SOLVES / max(solves, 1)), MIN_GROWTH, MAX_GROWTH))
 
 
 def state_of(system: StaticSystem, rest: Rest) -> StaticState:
-    """A state of rest as it is kept."""
+    """State to be stored from the result of `relax`."""
     force, joints = np.column_stack([rest.response.normal, rest.response.tangential]), len(system.equilibrium.points)
     displacement = dot(system.equilibrium.live, rest.x[: system.freedoms])
     return StaticState(rest.x, rest.response.plastic_slip, force[:joints], displacement, force[joints:, 0])

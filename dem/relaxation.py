@@ -1,21 +1,21 @@
-"""Rest of rigid blocks under a load or a displacement, or their fall: blocks creep on dashpots until they are still.
+"""Equilibrium of rigid blocks under a load or a displacement, or their fall: blocks creep on dashpots until at rest.
 
-With g(x) the unbalanced forces and K_e the elastic stiffness, the wall is first asked for equilibrium at once, as
-one implicit step whose history is the plastic slip before it. Where Newton's method finds none, the wall moves as
-it would if every joint had a dashpot in proportion to its springs,
+With the unbalanced forces g(x) and the elastic stiffness K_e, equilibrium is first sought directly, in one implicit
+step from the plastic slip before it. If Newton's method finds none, the wall moves as if every joint had a dashpot
+proportional to its springs,
 
     K_e q̇ = −g(q),                                                                                      (1)
 
-slip being taken up on the way: friction along a path that exists, instead of a state guessed far from it. What is at
-rest under (1) is in equilibrium, what is not goes on moving for ever, and loose blocks, for which the tangent is
-singular, hold nothing up: every joint resists its own motion and none that of the wall as a whole. Time steps 1/ε
-are implicit,
+and slip is taken up on the way: friction then follows a path that exists, instead of a state guessed far from it. A
+wall at rest under (1) is in equilibrium; a wall that is not keeps moving. Loose blocks, for which the tangent
+is singular, do not obstruct this: every joint resists its own motion, none the motion of the wall as a whole. Time
+steps 1/ε are implicit,
 
     g(q) + ε K_e (q − q₀) = 0,                                                                          (2)
 
-and solved by Newton's method with the consistent, unsymmetric Coulomb tangent; ε follows the linear systems this
-takes, so that (2) turns into Newton's method for equilibrium as the wall comes to rest. This is *pseudo-transient
-continuation* (Kelley & Keyes 1998) with a path that means something.
+and solved by Newton's method with the consistent, unsymmetric Coulomb tangent. ε is adapted to the number of linear
+systems per step, so that (2) turns into Newton's method for equilibrium as the wall comes to rest. This is
+*pseudo-transient continuation* (Kelley & Keyes 1998) along a path with a physical meaning.
 """
 
 import math
@@ -31,43 +31,43 @@ from .static_system import Control, StaticSystem, dot
 
 RestVerdict: TypeAlias = Literal["rest", "fall", "undecided"]
 
-BALANCED = 1e-9
-"""Largest unbalanced force that counts as none, relative to the largest joint force (or to the unit of force)."""
+BALANCE_TOLERANCE = 1e-9
+"""Tolerance of the unbalanced force, relative to the largest joint force (or to the unit of force, if larger)."""
 
-FIRST, LEAST, LARGEST = 1e-2, 1e-12, 1e3
-"""ε of the first time step if there is no equilibrium at once, and its bounds."""
+FIRST_RATE, MIN_RATE, MAX_RATE = 1e-2, 1e-12, 1e3
+"""ε of the first time step if no equilibrium is found at once, and the bounds of ε."""
 
-FOLLOWED, EXACT = 0.3, 1e-10
-"""Error with which (2) counts as solved, relative to its dashpots' forces or to the largest joint force."""
+DRAG_TOLERANCE, FORCE_TOLERANCE = 0.3, 1e-10
+"""Tolerances of the residual of (2), relative to dashpot forces and to the largest joint force; the larger counts."""
 
-PATIENCE, HOPELESS = 25, 100.0
-"""Linear systems after which a time step is given up, and growth of its error at which it is."""
+MAX_ITERATIONS, DIVERGENCE = 25, 100.0
+"""Newton iterations after which a time step is given up, and growth of its residual above which it is."""
 
-LENGTHS = 1.0, 0.4, 0.16, 0.064
-"""Lengths of a Newton step that are tried in turn while it errs more after it than before."""
+LINE_SEARCH = 1.0, 0.4, 0.16, 0.064
+"""Factors of a Newton step that are tried in turn until the residual decreases enough."""
 
-USUAL, SMALLER, LARGER, REFUSAL = 8.0, 0.1, 2.0, 10.0
-"""Linear systems after which ε stays, bounds of its factor after a time step, and its factor after one given up."""
+TARGET, MIN_FACTOR, MAX_FACTOR, RETRY_FACTOR = 8.0, 0.1, 2.0, 10.0
+"""Linear systems in a time step after which ε stays, bounds of its factor after a step, factor after one given up."""
 
-WARY, WARINESS = 0.6, 3
-"""Least factor of ε soon after a time step was given up, and how many time steps are soon."""
+CAUTIOUS, CAUTIOUS_STEPS = 0.6, 3
+"""Lower bound of the factor of ε after a time step was given up, and the number of steps for which it holds."""
 
-STEADY, SLOWING = 0.9, 0.5
-"""Unbalanced force, relative to that before half the motion, at which a fall does not slow down; and at which a creep
-of the `LONGEST` kind is one all the same: blocks that meet others on the way lose some of it each time."""
+FALL_RATIO, CREEP_RATIO = 0.9, 0.5
+"""Ratio of the unbalanced force to that at half the motion, from which on a far motion is a fall: at once, or only
+after `MAX_SOLVES`. The latter is lower because blocks that hit others on the way lose some of the force each time."""
 
-LONGEST = 3000
-"""Linear systems after which a creep that neither rests nor falls is left undecided, unless it goes on far away."""
+MAX_SOLVES = 3000
+"""Linear systems after which creep that neither rests nor falls is left undecided, unless it continues far away."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What became of a wall."""
+    """Result of `relax`."""
 
-    # ``rest`` in equilibrium, ``fall`` if it went farther than asked without slowing down, or ``undecided``
+    # ``rest`` in equilibrium, ``fall`` if the wall moved farther than `far` without slowing down, or ``undecided``
     verdict: RestVerdict
     x: Array  # (n,) unknowns (q, r, λ) of the `StaticSystem`
-    response: PointResponse  # answer of the joint points
+    response: PointResponse  # response of the joint points
     last: Array  # (nd,) motion of the last time step
     solves: int  # linear systems solved
 
@@ -78,55 +78,57 @@ def relax(
     plastic_slip: Array,
     control: Control,
     far: float,
-    budget: int = LONGEST,
+    budget: int = MAX_SOLVES,
     *,
     creeps: bool = True,
 ) -> Rest:
-    """Let a wall come to rest or fall.
+    """Bring a wall to rest or to its fall.
 
     Parameters
     ----------
     guess : (n,) float
-        First unknowns; they should satisfy the control, or the first step is judged by forces it must disturb.
+        Initial unknowns; they should satisfy the control, or the first step is judged by forces it must disturb.
     plastic_slip : (np,) float
         History of the joint points.
     control
         The last equation.
     far
-        Motion of a freedom that is a fall unless it slows down.
+        Motion of a freedom that counts as a fall unless it slows down.
     budget
-        Linear systems after which it is left undecided.
+        Linear systems after which the wall is left undecided.
     creeps
-        Whether it may creep where there is no equilibrium at once; else it is left undecided.
+        Whether the wall may creep if there is no equilibrium at once; otherwise it is left undecided.
     """
-    nd, x, rate, wary, refused, solves = system.freedoms, guess, LEAST, 0, False, 0
+    nd, x, rate, wary, refused, solves = system.freedoms, guess, MIN_RATE, 0, False, 0
     response = system.respond(x, plastic_slip)
     tangent, last = response.tangent, np.zeros(nd)
     path: list[tuple[float, float]] = []
     while True:
         residual = system.unbalanced(x, response, control)
         path.append((float(np.abs(x[:nd] - guess[:nd]).max()), _norm(residual[:nd])))
-        # Displacements, of which one unit makes about one unit of force, are held to the same measure.
-        if np.abs(residual).max() <= BALANCED * _largest(response):
+        # The same tolerance holds for displacement residuals: a unit of them makes about a unit of force.
+        if np.abs(residual).max() <= BALANCE_TOLERANCE * _largest(response):
             return Rest("rest", x, response, last, solves)
-        if path[-1][0] > far and _steady(path, STEADY):
+        if path[-1][0] > far and _steady(path, FALL_RATIO):
             return Rest("fall", x, response, last, solves)
         made = None
         while made is None:
             if solves >= budget or (refused and not creeps):
-                falls = solves >= LONGEST and path[-1][0] > far and _steady(path, SLOWING)
+                falls = solves >= MAX_SOLVES and path[-1][0] > far and _steady(path, CREEP_RATIO)
                 return Rest("fall" if falls else "undecided", x, response, last, solves)
             made, taken = _creep(system, x, plastic_slip, control, rate, tangent, residual)
             solves += taken
             if made is not None and not refused and np.abs(made[0][:nd] - guess[:nd]).max() > far:
-                made = None  # nothing falls at once: a rest may lie on the way
+                made = None  # no fall is accepted in one step: an equilibrium may lie on the way
             if made is None:
-                rate = min(REFUSAL * rate, LARGEST) if refused else FIRST
-                wary, refused = WARINESS, True
+                rate = min(RETRY_FACTOR * rate, MAX_RATE) if refused else FIRST_RATE
+                wary, refused = CAUTIOUS_STEPS, True
         last, x, tangent, plastic_slip = made[0][:nd] - x[:nd], made[0], made[1].tangent, made[1].plastic_slip
-        # The tangent is that of the step behind: a point that slid is taken to slide on.
+        # The tangent is that of the last step: points that slid are assumed to keep sliding.
         response = system.respond(x, plastic_slip)
-        rate = float(np.clip(rate * np.clip(taken / USUAL, WARY if wary else SMALLER, LARGER), LEAST, LARGEST))
+        rate = float(
+            np.clip(rate * np.clip(taken / TARGET, CAUTIOUS if wary else MIN_FACTOR, MAX_FACTOR), MIN_RATE, MAX_RATE)
+        )
         wary = max(wary - 1, 0)
 
 
@@ -139,10 +141,10 @@ def _creep(
     tangent: Array,
     residual: Array,
 ) -> tuple[tuple[Array, PointResponse] | None, int]:
-    """One time step (2) from `start`: unknowns and response after it, or None; and the linear systems it took."""
+    """Take one time step (2) from `start`: unknowns and response after it, or None, and the linear systems it took."""
     nd, x, drag = system.freedoms, start, np.zeros(system.freedoms)
     first = size = _norm(residual)
-    for taken in range(1, PATIENCE + 1):
+    for taken in range(1, MAX_ITERATIONS + 1):
         try:
             step = system.solve(tangent + rate * system.elastic, control, -residual)
         except np.linalg.LinAlgError:
@@ -150,7 +152,7 @@ def _creep(
         if not np.isfinite(step).all():
             return None, taken
         by_step, best = rate * system.viscous(step), np.inf
-        for share in LENGTHS:
+        for share in LINE_SEARCH:
             tried, dragged = x + share * step, drag + share * by_step
             answer = system.respond(tried, plastic_slip)
             left = system.unbalanced(tried, answer, control)
@@ -164,15 +166,15 @@ def _creep(
             return None, taken
         x, drag, response, residual = kept
         size, tangent = best, response.tangent
-        if size <= max(FOLLOWED * _norm(drag), EXACT * _largest(response)):
+        if size <= max(DRAG_TOLERANCE * _norm(drag), FORCE_TOLERANCE * _largest(response)):
             return (x, response), taken
-        if size > HOPELESS * first:
+        if size > DIVERGENCE * first:
             return None, taken
-    return None, PATIENCE
+    return None, MAX_ITERATIONS
 
 
 def _steady(path: list[tuple[float, float]], share: float) -> bool:
-    """Whether the unbalanced force is still some share of what it was before half the motion, or larger."""
+    """Whether the unbalanced force is at least `share` of its last value within the first half of the motion."""
     moved, size = path[-1]
     return size >= share * next(before for way, before in reversed(path) if way <= moved / 2)
 

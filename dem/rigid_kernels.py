@@ -1,8 +1,8 @@
 """Kinematics of rigid blocks as compiled kernels: two contact points a joint, at ± h along its tangent.
 
-Small displacements: the jumps are linear in the motions, and the same as `jump_operator`'s. Joints come in runs
-(`joint_order.JointOrder`), in which blocks follow one another as joints do, so that the loops run in vector registers.
-Indices are unsigned, which need no check for counting from the end.
+Small displacements: the jumps are linear in the motions and equal to those of `jump_operator`. Joints come in runs
+(`joint_order.JointOrder`), in which block numbers increase along with joint numbers, so that the loops run in vector
+registers. Indices are unsigned, which spares the check for negative ones that count from the end.
 """
 
 from typing import NamedTuple
@@ -19,11 +19,11 @@ class RigidJoints(NamedTuple):
     """Joints in runs."""
 
     start: Unsigned  # (nr + 1,) first joint of each run, then the number of joints
-    # (nr,) place of the blocks a and b of each run's first joint, less the number of that joint; what is negative
-    # wraps round, and comes out right in a sum all the same
+    # (nr,) positions of the blocks a and b of each run's first joint, minus the number of that joint; negative
+    # differences wrap round, and still give the right sums
     first: Unsigned
     second: Unsigned
-    # (nr, 8) what is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, lever
+    # (nr, 8) values shared by all joints of a run: normal n_x, n_y, half length [m] between the two points, lever
     # arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b, tangent_a,
     # tangent_b, and the area [m²] of a point
     shape: Array
@@ -33,7 +33,7 @@ class RigidJoints(NamedTuple):
 def jumps(
     apart: tuple[float, float], spin_a: float, spin_b: float, of_run: tuple[float, ...]
 ) -> tuple[float, float, float]:
-    """Openings of a joint's two points and their slip [m], from motions of block b less a's, and both rotations."""
+    """Openings of a joint's two points and their slip [m], from the motion of block b minus a's, and both rotations."""
     (du, dv), (nx, ny, half, normal_a, normal_b, tangent_a, tangent_b) = apart, of_run
     middle = du * nx + dv * ny + (spin_b * normal_b - spin_a * normal_a)
     along = dv * nx - du * ny + (spin_b * tangent_b - spin_a * tangent_a)
@@ -55,7 +55,7 @@ def gather_rigid(motion: Array, geometry: RigidJoints, opening: Array, slip: Arr
         nx, ny, half, normal_a, normal_b = shape[run, 0], shape[run, 1], shape[run, 2], shape[run, 3], shape[run, 4]
         of_run = (nx, ny, half, normal_a, normal_b, shape[run, 5], shape[run, 6])
         a, b, low, high = first[run], second[run], start[run], start[np.uint64(run + 1)]
-        if high - low == 1:  # no loop to set up, as in walls whose stones differ
+        if high - low == 1:  # saves the set-up of a loop, as in walls of irregular stones
             p, q = a + low, b + low
             apart = (u[q] - u[p], v[q] - v[p])
             opening_1[low], opening_2[low], slip_1[low] = jumps(apart, spin[p], spin[q], of_run)
@@ -72,11 +72,11 @@ def gather_rigid(motion: Array, geometry: RigidJoints, opening: Array, slip: Arr
 
 @kernel
 def scatter_rigid(normal: Array, tangential: Array, geometry: RigidJoints, force: Array) -> None:
-    """Subtract from modal forces ``(3 nb,)`` what the joint points' tractions ``(2 nj,)`` do on them."""
+    """Subtract the joint points' tractions ``(2 nj,)``, as modal forces, from the modal forces ``(3 nb,)``."""
     start, first, second, shape = geometry
     n, nb = normal.size // 2, force.size // 3
     fx, fy, moment = force[:nb], force[nb : 2 * nb], force[2 * nb :]
-    # Pull, shear and turn of each joint take the place of its points' tractions.
+    # Pull, shear and turn of each joint overwrite its points' tractions.
     pull, turn, shear = normal[:n], normal[n:], tangential[:n]
     for j in range(n):
         one, two = pull[j], turn[j]
@@ -107,7 +107,7 @@ def scatter_rigid(normal: Array, tangential: Array, geometry: RigidJoints, force
             fy[a + j] += pull[j] * ny + shear[j] * nx
         for j in range(low, high):
             moment[a + j] += pull[j] * normal_a + shear[j] * tangent_a + turn[j] * half
-        # The two sides apart, for a run may have one side's blocks a step behind the other's.
+        # The two sides in separate loops, because the blocks b of a run may be its blocks a of the next joints.
         for j in range(low, high):
             fx[b + j] -= pull[j] * nx - shear[j] * ny
         for j in range(low, high):

@@ -36,7 +36,7 @@ from .rigid_kernels import gather_rigid, scatter_rigid
 
 
 def contact_points(scene: Scene) -> JointPoints:
-    """Contact points in the order of the kernels: all joints' first ones, then all second ones, and so on."""
+    """Contact points in the order of the kernels: the first ones of all joints, then all second ones, and so on."""
     return joint_order(scene).points
 
 
@@ -60,7 +60,7 @@ def rigid_system(scene: Scene) -> BlockSystem:
 
 
 def with_fictitious_inertia(scene: Scene, system: BlockSystem) -> BlockSystem:
-    """Rigid blocks at small displacements that are as slow in each of their motions as in the slowest (`inertia`)."""
+    """Raise the masses of rigid blocks so that all their motions are as slow as the slowest (`inertia_factors`)."""
     points, mass = contact_points(scene), held_masses(scene).reshape(-1, 3)
     factors = inertia_factors(scene, points, mass)
     heavier = system.mass.copy()
@@ -71,7 +71,7 @@ def with_fictitious_inertia(scene: Scene, system: BlockSystem) -> BlockSystem:
 
 
 def system_on(scene: Scene, interface: Interface, rigid: Indices) -> BlockSystem:
-    """The rigid blocks of a scene on an interface, with their freedoms where `rigid` ``(nb, 3)`` has them."""
+    """Rigid blocks of a scene on an interface, with their freedoms numbered by `rigid` ``(nb, 3)``."""
     restraint, mass = _restraint(scene, held_masses(scene))
     dead, live, control = dead_load(scene), live_load(scene), control_row(scene)
     for row in (dead, live, control):
@@ -115,14 +115,14 @@ def held_masses(scene: Scene) -> Array:
 def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw, mass: Array) -> float:
     """Bound of the largest ω² of blocks with masses ``(nb, 3)`` [1/s²].
 
-    A single block held at both corners has no joint and no frequency: it does not move, and any will do.
+    A single block held at both corners has no joint and no frequency: it does not move, and any value will do.
     """
     normal, shear = law.stiffest, law.shear_stiffness
     return rigid_frequency_squared(points, points.block, scene.blocks.centroid, mass, normal, shear) or 1.0
 
 
 def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
-    """Coordinates of the pinned blocks in which their pins hold by themselves, and the masses of those."""
+    """Coordinates of the pinned blocks in which the pins are satisfied by construction, and the masses in them."""
     rows = pin_operator(scene).toarray()
     blocks = np.unique(scene.pins.block)
     bases = np.zeros((len(blocks), 3, 3))

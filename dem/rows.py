@@ -1,4 +1,4 @@
-"""Rows of a sparse matrix, whose products with vectors take less than a library's look at what it is asked for."""
+"""Sparse matrix by rows, whose products with vectors avoid the overhead of a library's argument checks."""
 
 from typing import NamedTuple
 
@@ -13,17 +13,17 @@ class Rows(NamedTuple):
     """A sparse matrix by rows."""
 
     start: Unsigned  # (n + 1,) first entry of each row, then their number
-    column: Unsigned  # a kernel asks of each index that may be negative whether it is
+    column: Unsigned  # unsigned, as kernels check every signed index for negative values
     value: Array
 
     @classmethod
     def of(cls, matrix: csr_array | csc_array) -> "Rows":
-        """The rows of a matrix ``(n, m)``."""
+        """Convert a sparse matrix ``(n, m)``."""
         rows = csr_array(matrix)
         return cls(rows.indptr.astype(np.uint64), rows.indices.astype(np.uint64), rows.data)
 
     def times(self, vector: Array) -> Array:
-        """The product with a vector ``(m,)``, each sum in the order of the row's entries."""
+        """Product with a vector ``(m,)``, each sum in the order of the row's entries."""
         product = np.empty(len(self.start) - 1)
         _multiply(self.start, self.column, self.value, vector, product)
         return product

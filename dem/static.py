@@ -1,18 +1,18 @@
 """Model ``dem-static``: rigid blocks on elastic, frictional joint points, brought to rest load by load until they fall.
 
 The paper's second solver (Sec. 3) sets the stiffness of violated joint actions to zero and solves again, which
-cycles or goes singular below collapse (`stiffness_update`). Here each load is held until the wall is in equilibrium
-or has fallen, by Newton's method with the consistent Coulomb tangent and, where that finds no equilibrium at once,
-by the wall's own creep on dashpots (`relaxation`). Past the largest load that it bears, displacements are prescribed
-and the curve goes on.
+cycles or becomes singular below collapse (`stiffness_update`). Here each load is held until the wall is in equilibrium
+or has fallen: by Newton's method with the consistent Coulomb tangent and, if that finds no equilibrium at once, by
+creep of the wall on dashpots (`relaxation`). Past the largest load that the wall carries, displacements are prescribed
+and the curve continues.
 
-Walls of upright or of small blocks do not reach one peak and sink: as blocks rock and slip into place λ falls and
-rises again many times over motions of a few elastic lengths. Under a displacement such a wall snaps, and where
-depends on the steps; under a load it falls to its next rest, or for good. Hence the bracket is one of loads. Friction
-remembers: loads in longer steps may bring a wall down earlier or later. The wall is loaded again in steps half as long;
-where that brings it down elsewhere, the bracket takes in both.
+The curves of walls of upright or small blocks do not have a single peak: as blocks rock and slip into place, λ falls
+and rises again many times over motions of a few elastic lengths. Under a prescribed displacement such a wall snaps, at
+a point that depends on the steps; under a load it falls to its next equilibrium, or for good. Hence the bracket is one
+of loads. Friction makes the result path-dependent: longer load steps may bring a wall down at a lower or higher load.
+The wall is therefore loaded again in steps half as long; if it then falls elsewhere, the bracket includes both.
 
-A beam or supports that are moved by displacements take the wall along, step by step (`led`).
+A beam or supports with prescribed displacements take the wall along, step by step (`led`).
 """
 
 import time
@@ -30,7 +30,7 @@ from runningbond.results import Outcome, Supports
 from runningbond.results.outcome import joined, number
 from runningbond.scene import Scene, check_scene
 
-from .climb import INTERRUPTED, NEITHER, SPENT, climb, ends, look_closer, peak
+from .climb import BUDGET_SPENT, INTERRUPTED, NO_VERDICT, climb, ends, look_closer, peak
 from .led import lead_along
 from .pushover import LoadPath, StaticObserver, no_observer, state_of
 from .relaxation import relax
@@ -40,19 +40,19 @@ FIRST_STEP = 0.03
 """First load, in units of `Equilibrium`."""
 
 FALLEN = 0.05
-"""Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
+"""Motion of a block that counts as a fall unless it slows down, in heights of the lowest block."""
 
 BUDGET = 20_000
 """Linear systems after which a wall is left undecided."""
 
 PAST = 500
-"""Linear systems that are spent past the largest load."""
+"""Linear systems that may be spent past the largest load."""
 
 OTHER_STEP = 0.5
-"""First step of the path beside the first one, in its own."""
+"""First step of the second load path, relative to that of the first path."""
 
 ROUNDING = 1e-9
-"""Part of a load by which λ of a state of rest may differ from it."""
+"""Relative difference between a load and λ of its equilibrium that is put down to rounding."""
 
 
 def dem_static(
@@ -65,7 +65,7 @@ def dem_static(
     past: int = PAST,
     observe: StaticObserver = no_observer,
 ) -> Outcome:
-    """Collapse of a scene under growing loads, each held until the wall rests or falls, at small displacements.
+    """Find the collapse load of a scene at small displacements, with each load held until the wall rests or falls.
 
     Parameters
     ----------
@@ -74,26 +74,27 @@ def dem_static(
     tolerance
         Relative width of the bracket.
     first_step
-        First load, in live loads as large as the largest dead one, for a weightless wall as the strongest joint
-        point. Steps grow while the wall is easily brought to rest and shrink where it is not.
+        First load, in units in which the live load equals the largest dead load, or for a weightless wall the strength
+        of the strongest joint point. Steps grow while equilibrium is found easily, and shrink while it is not.
     collapse
-        Motion of a block that is a fall unless it slows down, in heights of the lowest block.
+        Motion of a block that counts as a fall unless it slows down, in heights of the lowest block.
     budget
-        Linear systems after which it is left undecided, on each path.
+        Linear systems on each load path after which the wall is left undecided.
     past
-        Linear systems that are spent on the curve past the largest load, and on a closer look at the bracket.
+        Linear systems that may be spent on the curve past the largest load, and on refining the bracket.
     observe
-        Called with every state at rest of the first path as it is found, and in the end with those past the largest
-        load; then with all those of another path, if that ends lower.
+        Called with every equilibrium of the first path as it is found, and at the end with those past the largest
+        load; then with all those of the second path, if that ends lower.
 
     Returns
     -------
     Outcome
-        `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell; where paths in
-        other load steps disagree, both are those of the path that ends lowest and of the one that ends highest.
-        `curve` has the states at rest of the lowest, past the largest load under prescribed displacements; `force` is
-        of `lower`. Of a wall that is led `curve` has its whole way and `force` is of the answer, and `lower` and
-        `upper` are the answers in the last steps and in those twice as long. Ctrl-C ends it with the result so far.
+        `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell; if paths with
+        different load steps disagree, `lower` is that of the path that ends lowest, `upper` of the one that ends
+        highest. `curve` has the equilibria of the lowest path, past the largest load at prescribed displacements;
+        `force` belongs to `lower`. For a driven wall, `curve` has the whole path, `force` belongs to the answer, and
+        `lower` and `upper` are the answers with the last steps and with steps twice as long. Ctrl-C ends the run with
+        the result so far.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -110,7 +111,7 @@ def dem_static(
                 if len(scene.late_pins):
                     system, late = with_late_pins(system, rest.x)
                     rest = replace(rest, x=late)
-                # Under the live load, where joints neither open nor slip.
+                # Elastic motion under the live load, while joints neither open nor slip.
                 moved = elastic_displacement(scene.with_block(young=None), system.equilibrium.live_unit) or 0.0
                 elastic, rests = moved / system.length_unit, [state_of(system, rest)]
                 hangs = 0.0 if scene.is_led else hanging_displacement(scene) / system.length_unit
@@ -129,7 +130,7 @@ def dem_static(
 
 
 def _window(path: LoadPath) -> str:
-    """What there is to say of the stiffness of joints: at rest under the dead load."""
+    """Note on joints that are too soft or too stiff, judged at rest under the dead load; empty for others."""
     equations, law, unit = path.system.equilibrium, path.system.law, path.system.length_unit
     normal = path.rests[0].force[:, 0]
     overlap = unit * float((-normal / law.normal_stiffness[: len(normal)]).max(initial=0.0))
@@ -139,7 +140,7 @@ def _window(path: LoadPath) -> str:
 
 
 def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, tolerance: float, past: int) -> Outcome:
-    """Outcome of a wall that is loaded from its rest under its weight, and if it collapses in other steps too."""
+    """Outcome of a wall that is loaded from rest under its dead load, and again in other steps if it collapses."""
     paths, left, cut = [first], first.budget, ""
     climb(first, first_step, tolerance)
     if not first.undecided:
@@ -168,7 +169,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
 
 
 def _look_closer(path: LoadPath, tolerance: float, past: int) -> str:
-    """Follow a path past its largest load, if at all; what there is to say if that was cut short."""
+    """Follow a path past its largest load if `past` allows; return a note if that was interrupted."""
     with suppress(KeyboardInterrupt):
         if past:
             look_closer(path, tolerance, past)
@@ -177,20 +178,20 @@ def _look_closer(path: LoadPath, tolerance: float, past: int) -> str:
 
 
 def _apart(found: list[LoadPath]) -> list[LoadPath]:
-    """Paths whose brackets have no load in common; none where they have: one may rest where another falls."""
+    """The paths if their brackets have no load in common, so that one rests where another falls; else none."""
     lower, upper = zip(*map(ends, found), strict=True) if found else ((0.0,), (np.inf,))
     return [] if max(lower) < (1 - ROUNDING) * min(upper) else found
 
 
 def _loads(path: LoadPath) -> str:
-    """The bracket of a path, or that it has none."""
+    """Bracket of a path as text, or why it has none."""
     if path.undecided:
         return f"no answer: {path.undecided}"
     return "–".join(number(path.system.equilibrium.live_unit * end) for end in ends(path))
 
 
 def _judge(result: Outcome, path: LoadPath) -> Outcome:
-    """Verdict on a climb, and its arrays."""
+    """Outcome with the verdict on a load path, and its arrays."""
     system, states = path.system, [*path.rests, *path.past]
     equations, best = system.equilibrium, peak(path)
     unit = equations.live_unit
@@ -218,10 +219,10 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
         if path.fall is None:
             message = "largest load at rest, and what limit analysis proves that nothing exceeds; small displacements"
         unclear = [number(unit * load) for load in path.unclear if best.multiplier < load < (path.upper or np.inf)]
-        message += f"; {NEITHER} under {', '.join(unclear)}" if unclear else ""
+        message += f"; {NO_VERDICT} under {', '.join(unclear)}" if unclear else ""
         return replace(result, status="collapse", multiplier=result.lower, message=message)
     if path.undecided != INTERRUPTED and path.upper is None and is_self_locking(equations.scene):
-        if path.undecided == SPENT:
+        if path.undecided == BUDGET_SPENT:
             message = f"no answer: {path.undecided}, though joint forces balance any multiple of the load"
             return replace(result, message=message)
         message = f"self-locking: {path.undecided}, and joint forces balance any multiple of it"
@@ -230,7 +231,7 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
 
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:
-    """Outcome of a wall that was not brought to rest under its dead load; how it falls is known to limit analysis."""
+    """Outcome of a wall without an equilibrium under its dead load; limit analysis yields how it falls."""
     fall = proved_outcome(system.equilibrium.scene)
     if fall.status == "infeasible":
         return replace(result, status="infeasible", message=fall.message, motion=fall.motion)

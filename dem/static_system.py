@@ -2,11 +2,11 @@
 
     B_nᵀ N + B_tᵀ S + Cᵀ r − f_dead − λ f_live = 0,    C q = c,    f_live · q = d  (or λ given)
 
-in the scaled freedoms and forces of `Equilibrium`; displacements are measured in the elastic length that the unit
-of force makes of the stiffest joint point, so that stiffnesses, too, are of order one. Unknowns are ordered
-x = (q, r, λ). The tangent has the same pattern in every step: its entries are found once as sums of joint points'
+in the scaled freedoms and forces of `Equilibrium`; displacements are measured in the elastic deformation of the
+stiffest joint point under the unit of force, so that stiffnesses are of order one too. Unknowns are ordered
+x = (q, r, λ). The tangent has the same sparsity pattern in every step, which is set up once as sums of joint points'
 entries. Ties are points after those of the joints (`tied_law`). Supports that move add λ times their own jumps to those
-of the blocks; then λ is given, and nothing is a live load.
+of the blocks; λ is then prescribed, and there is no live load.
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +29,7 @@ from .tied_law import TiedLaw
 
 @dataclass(frozen=True)
 class Control:
-    """The last equation: the live load's displacement f_live · q, or λ where `multiplier`, has this value."""
+    """The last equation: it prescribes the displacement f_live · q of the live load, or λ if `multiplier` is set."""
 
     value: float
     multiplier: bool = False
@@ -37,13 +37,13 @@ class Control:
 
 @dataclass(frozen=True, eq=False)
 class StaticSystem:
-    """The static equations of a scene."""
+    """Static equations of a scene."""
 
-    equilibrium: Equilibrium  # scaled equilibrium of its blocks; its ties are points after those of the joints
-    law: PointLaw | TiedLaw  # law of its joint points and ties, scaled
+    equilibrium: Equilibrium  # scaled equilibrium of the blocks; ties are points after those of the joints
+    law: PointLaw | TiedLaw  # scaled law of the joint points and ties
     length_unit: float  # displacement [m] that counts as 1
-    support_jump: Array | None = None  # (2, np) openings and slips that supports make at λ = 1
-    held: Array | float = 0.0  # (n_pins,) what the pinned motions are
+    support_jump: Array | None = None  # (2, np) openings and slips due to the motion of supports at λ = 1
+    held: Array | float = 0.0  # (n_pins,) prescribed values of the pinned motions
 
     @property
     def freedoms(self) -> int:
@@ -66,21 +66,21 @@ class StaticSystem:
         return csr_array(self.equilibrium.slip.T)
 
     def respond(self, x: Array, plastic_slip: Array) -> PointResponse:
-        """Answer of the joint points ``(np,)`` to unknowns ``(n,)`` after a plastic slip ``(np,)``."""
+        """Response of the joint points ``(np,)`` to unknowns ``(n,)``, after a plastic slip ``(np,)``."""
         jump = self._jump_of(x)
         if self.support_jump is not None:
             jump += x[-1] * self.support_jump
         return self.law(jump[0], jump[1], plastic_slip)
 
     def motion(self, x: Array) -> Array:
-        """Motion of all blocks, ``(nb, 3)`` [m, m, rad], that unknowns ``(n,)`` stand for."""
+        """Motion of all blocks, ``(nb, 3)`` [m, m, rad], from unknowns ``(n,)``."""
         scene = self.equilibrium.scene
         motion = np.zeros(3 * len(scene.blocks)) if self.support_jump is None else x[-1] * scene.support_motion.ravel()
         motion[movable_freedoms(scene)] = x[: self.freedoms] * self.equilibrium.scale * self.length_unit
         return motion.reshape(-1, 3)
 
     def per_freedom(self, row: Array) -> Array:
-        """A row ``(3 nb,)`` per motion of the blocks [m, rad] as one per scaled freedom, ``(nd,)``."""
+        """Convert a row ``(3 nb,)`` per motion of the blocks [m, rad] to one per scaled freedom, ``(nd,)``."""
         system = self.equilibrium
         return np.asarray(row[movable_freedoms(system.scene)] * system.scale * self.length_unit)
 
@@ -95,16 +95,16 @@ class StaticSystem:
         return np.concatenate([force, pinned[nd:] - self.held, [last - control.value]])
 
     def viscous(self, motion: Array) -> Array:
-        """Forces ``(nd,)`` of dashpots in proportion to the elastic stiffness of every joint point."""
+        """Forces ``(nd,)`` of dashpots proportional to the elastic stiffness of every joint point."""
         opening, slip = self._jump_of(motion)
         return self._force_of(self.law.normal_stiffness * opening, self.law.shear_stiffness * slip)
 
     def _jump_of(self, x: Array) -> Array:
-        """Opening and slip of the joint points in a motion, the first of unknowns ``(n,)``; ``(2, np)``."""
+        """Opening and slip of the joint points, ``(2, np)``, from the motion that begins the unknowns ``(n,)``."""
         return self._jumps.times(x[: self.freedoms]).reshape(2, -1)
 
     def _force_of(self, normal: Array, tangential: Array) -> Array:
-        """Forces on the freedoms ``(nd,)`` of forces ``(np,)`` of the joint points."""
+        """Forces on the freedoms ``(nd,)`` from normal and tangential forces ``(np,)`` of the joint points."""
         opened, slid = self._forces.times(np.concatenate([normal, tangential])).reshape(2, -1)
         return np.asarray(opened + slid)
 
@@ -114,22 +114,22 @@ class StaticSystem:
         Parameters
         ----------
         tangent : (np, 2, 2) float
-            Of the joint points and ties.
+            Tangents of the joint points and ties.
         control
-            Which equation is the last.
+            The last equation.
         right : (n,) float
             Right-hand side.
 
         Raises
         ------
         numpy.linalg.LinAlgError
-            For a tangent that is singular to the last bit.
+            If the tangent is exactly singular.
         """
         points, live = len(self._jump), self.equilibrium.live
         border = np.concatenate([live, np.zeros(self.unknowns - 1 - len(live))])
         given = control.multiplier and right[-1] == 0
         loads = [right[:-1], *([] if given else [border]), *([self._tie_ends] if len(tangent) > points else [])]
-        # The border of λ is eliminated by hand: q = a + λ b.
+        # The bordering row and column of λ are eliminated by hand: q = a + λ b.
         solved = self._factors.solve(tangent[:points], np.column_stack(loads)).T
         if len(tangent) > points:
             solved = self._tied(tangent[points:, 0, 0], *np.split(solved, [1 if given else 2]))
@@ -140,11 +140,11 @@ class StaticSystem:
         return np.append(a + multiplier * b, multiplier)
 
     def _tied(self, tangent: Array, solved: Array, ends: Array) -> Array:
-        """Solutions ``(k, n - 1)`` with ties of a tangent ``(nt,)`` from those with springs in their place.
+        """Solutions ``(k, n - 1)`` with ties of a tangent ``(nt,)``, from solutions with springs in their place.
 
-        Ties couple what lies far apart, and fronts would be as large. Each of a tie's ends is a spring to the ground
-        instead, as stiff as the tie: where the tied wall has a regular tangent, so has that one. In the springs' stead
-        come the ties (Woodbury), by the solutions ``(2 nt, n - 1)`` for unit forces at the ends.
+        Ties couple distant blocks, which would make fronts large. Instead, a spring as stiff as the tie holds each of
+        its ends to the ground: if the tied wall has a regular tangent, so has the wall with springs. The springs are
+        then replaced by the ties (Woodbury), with the solutions ``(2 nt, n - 1)`` for unit forces at the ends.
         """
         far, spring = np.diag(tangent), np.diag(tangent - self.law.normal_stiffness[-len(tangent) :])
         change = np.block([[spring, far], [far, spring]])
@@ -160,22 +160,22 @@ class StaticSystem:
 
     @cached_property
     def _jumps(self) -> Rows:
-        """`opening`, then `slip`: two products cost little more than one, and each call as much as a small wall's."""
+        """`opening` above `slip`, for one product: for a small wall, a call costs as much as the product itself."""
         return Rows.of(csr_array(vstack([self.opening, self.slip])))
 
     @cached_property
     def _forces(self) -> Rows:
-        """Forces on the freedoms of unit normal forces, then those of unit tangential ones, ``(2 nd, 2 np)``."""
+        """Forces on the freedoms due to unit normal forces, then due to unit tangential forces, ``(2 nd, 2 np)``."""
         return Rows.of(block_diag([self.equilibrium.opening, self.equilibrium.slip], format="csr"))
 
     @cached_property
     def _pins(self) -> Rows:
-        """Forces on the freedoms of unit reactions, then displacements of pinned points per freedom."""
+        """Forces on the freedoms due to unit reactions, then displacements of pinned points per freedom."""
         return Rows.of(block_diag([self.equilibrium.reaction, self.equilibrium.reaction.T], format="csr"))
 
     @cached_property
     def _tie_ends(self) -> Array:
-        """Forces on all but λ of a unit pull at each first, then each second end of a tie, ``(n − 1, 2 nt)``."""
+        """Forces (all but λ's) of a unit pull at each first, then each second end of a tie, ``(n − 1, 2 nt)``."""
         scene = self.equilibrium.scene
         ends = np.zeros((self.unknowns - 1, 2 * len(scene.ties)))
         ends[: self.freedoms] = _rows(self.equilibrium, tie_ends(scene)).toarray()
@@ -183,7 +183,7 @@ class StaticSystem:
 
     @cached_property
     def _constant(self) -> Array:
-        """Entries of the springs at the ties' ends, then of C in the order of its columns, twice."""
+        """Constant entries: of the springs at the ties' ends, then twice those of C in the order of its columns."""
         pins = self.equilibrium.reaction.tocoo().data
         if len(self.equilibrium.scene.ties) == 0:
             return np.concatenate([pins, pins])
@@ -193,7 +193,7 @@ class StaticSystem:
 
     @cached_property
     def _freedoms_of_ends(self) -> Indices:
-        """Freedoms of the block at each end of a tie, ``(2 nt, 3)``; −1 where none moves."""
+        """Freedoms of the block at each end of a tie, ``(2 nt, 3)``; −1 at a held block or an anchor in space."""
         block = self.equilibrium.scene.ties.block.T.ravel()
         return np.where(block[:, None] >= 0, self._freedoms_of_blocks[block], -1)
 
@@ -212,7 +212,7 @@ class StaticSystem:
 
     @cached_property
     def _jump(self) -> Array:
-        """Opening and slip of each joint point per own freedom, ``(np, 2, 6)``; zero where a block is held."""
+        """Opening and slip of each joint point per freedom of its blocks, ``(np, 2, 6)``; zero for held blocks."""
         own = self._freedoms_of_points
         jump = np.zeros((len(own), 2, 6))
         for k, operator in enumerate((self.opening, self.slip)):
@@ -223,7 +223,7 @@ class StaticSystem:
 
     @cached_property
     def _factors(self) -> Dissection:
-        """Where the entries of the tangent go: the joint points' 6 × 6 tangents, the springs at ties' ends, C twice."""
+        """Dissection of the tangent: joint points' 6 × 6 tangents, springs at the ties' ends, and C twice."""
         nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
         pins, ends = self.equilibrium.reaction.tocoo(), self._freedoms_of_ends
         row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), np.repeat(ends, 3, axis=1).ravel()])
@@ -235,7 +235,7 @@ class StaticSystem:
 
 
 def _independent(pins: csc_array) -> csc_array:
-    """Pins that do not follow from others: a block pinned at both corners has four, and three motions."""
+    """Linearly independent pins: a block pinned at both corners has four pins, but only three motions."""
     if pins.shape[1] == 0:
         return pins
     _, triangle, order = qr(pins.toarray(), mode="economic", pivoting=True)
@@ -244,27 +244,27 @@ def _independent(pins: csc_array) -> csc_array:
 
 
 def dot(one: Array, other: Array) -> float:
-    """Scalar product, summed in one order: that of a library differs in its last bits from machine to machine."""
+    """Scalar product, summed in a fixed order: a library's result differs in its last bits from machine to machine."""
     return float(np.einsum("i,i", one, other))
 
 
 def _rows(system: Equilibrium, operator: csr_array) -> csc_array:
-    """An operator on the motion of all blocks ``(k, 3 nb)`` as forces on the scaled freedoms, ``(nd, k)``."""
+    """Convert an operator on the motion of all blocks ``(k, 3 nb)`` to forces on the scaled freedoms, ``(nd, k)``."""
     return csc_array(operator[:, movable_freedoms(system.scene)].T * system.scale[:, None])
 
 
 def static_system(scene: Scene) -> StaticSystem:
-    """Set up the static equations of a scene, without what is held only once its dead load is on.
+    """Set up the static equations of a scene, without the pins that act only once the dead load is on.
 
     Raises
     ------
     SceneError
-        If the scene gives its joints no stiffness, or a law that has no tangent; for a support under a weightless wall.
+        If the joints have no stiffness, or a law without a tangent; for a support that moves under a weightless wall.
     """
     system, ties = equilibrium(scene), scene.ties
     system = replace(system, reaction=_independent(system.reaction))
     normal, shear = (k * system.points.area for k in wall_stiffness(scene, system.points.joint))
-    # A single block held at both corners has no joint, and does not move.
+    # A single block held at both corners has no joint and does not move: any unit will do.
     stiffest = float(max(k.max(initial=0.0) for k in (normal, shear, ties.stiffness))) or 1.0
     length = system.force_unit / stiffest
     scale = length / system.force_unit
@@ -278,7 +278,7 @@ def static_system(scene: Scene) -> StaticSystem:
         system = replace(system, opening=opening, slip=slip)
     support_jump = None
     if scene.settlement is not None:
-        reaction_unit(scene)  # refuses a wall that nothing moves
+        reaction_unit(scene)  # raises an error for a weightless wall
         system = replace(system, live=np.zeros(system.freedoms), live_unit=1.0)
         moved, jump = scene.support_motion.ravel() / length, jump_operator(system.points, scene.blocks.centroid)
         opened, slid = np.append(jump.opening @ moved, tie_operator(scene) @ moved), jump.slip @ moved
@@ -287,7 +287,7 @@ def static_system(scene: Scene) -> StaticSystem:
 
 
 def with_late_pins(system: StaticSystem, x: Array) -> tuple[StaticSystem, Array]:
-    """Hold what is held once the dead load is on as it is in unknowns ``(n,)``; they with the further reactions."""
+    """Add the pins that act once the dead load is on, as placed in unknowns ``(n,)``; add their reactions to these."""
     equations = system.equilibrium
     late = _rows(equations, pin_operator(equations.scene, equations.scene.late_pins))
     reaction = csc_array(hstack([equations.reaction, late]))

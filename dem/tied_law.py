@@ -1,10 +1,11 @@
-"""Ties beside joint points: bars that pull, never push, and yield.
+"""Joint law with ties: bars that carry only tension, and yield.
 
-With e a bar's elongation, K = E A / L, P its preload and Y its yield force, its plastic elongation e_p its history,
+With e the elongation of a bar, K = E A / L, its preload P, its yield force Y, and its plastic elongation e_p as history
+variable,
 
-    F = min(max(P + K (e − e_p), 0), Y),      e_p ← e − (Y − P) / K  where it yields,                         (1)
+    F = min(max(P + K (e − e_p), 0), Y),      e_p ← e − (Y − P) / K  if it yields,                            (1)
 
-so that it unloads elastically, and goes slack earlier once it has yielded.
+so that it unloads elastically, and goes slack at a larger elongation once it has yielded.
 """
 
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from runningbond.scene import Array
 
 @dataclass(frozen=True, eq=False)
 class TiedLaw:
-    """Joint points, then ties, each of which is a point that opens by its elongation and never slips.
+    """Law of joint points and, after them, ties: each tie is a point that opens by its elongation and never slips.
 
     Parameters
     ----------
@@ -39,11 +40,11 @@ class TiedLaw:
 
     @property
     def shear_stiffness(self) -> Array:
-        """K_t, and zero of ties, ``(np + nt,)``."""
+        """K_t, and zero for ties, ``(np + nt,)``."""
         return np.append(self.joints.shear_stiffness, np.zeros(len(self.stiffness)))
 
     def __call__(self, opening: Array, slip: Array, plastic: Array) -> PointResponse:
-        """Answer to the jumps of points and elongations of ties ``(np + nt,)`` with a given history."""
+        """Response to the jumps of points and elongations of ties ``(np + nt,)``, for a given history."""
         n = len(self.joints.normal_stiffness)
         joints = self.joints(opening[:n], slip[:n], plastic[:n])
         trial = self.preload + self.stiffness * (opening[n:] - plastic[n:])

@@ -1,1 +1,1 @@
-"""Interface finite elements: deformable blocks on scikit-fem operators, reduced to modes block by block."""
+"""Interface finite elements: deformable blocks from scikit-fem operators, reduced to modes block by block."""

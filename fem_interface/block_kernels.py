@@ -1,10 +1,10 @@
-"""Kinematics of blocks with modes as compiled kernels: modes to joint nodes, those to jumps, and back.
+"""Kinematics of blocks with modes as compiled kernels: from modes to joint nodes, from nodes to jumps, and back.
 
-Motions are kept template by template, each a matrix Q of modes by blocks, so that the displacements of all nodes that
-lie on joints are one product U = Φ Q, and the forces on the modes another, F −= Φᵀ S. Where Φ can be folded
-(`mirror_symmetry`) few of its entries are left. Joint elements come in runs (`modal_wall`), in which blocks follow
-one another as elements do, so that the loops run in vector registers. Indices are unsigned, which need no check for
-counting from the end.
+Modal coordinates are stored template by template, each as a matrix Q of modes by blocks. The displacements of all
+nodes on joints are then one product U = Φ Q, and the modal forces another, F −= Φᵀ S. If Φ can be folded
+(`mirror_symmetry`), few nonzero entries remain. Joint elements are ordered in runs (`modal_wall`) along which the
+blocks are consecutive too, which lets the compiler vectorise the loops. Indices are unsigned, because signed ones
+need a check for negative values that count from the end.
 """
 
 from collections.abc import Sequence
@@ -28,12 +28,12 @@ class NodalTables(NamedTuple):
     Parameters
     ----------
     shapes : (n_templates, 6) int
-        Number of blocks, of modes and of displacements a block; where the template's coordinates, its nodes'
-        displacements and its table start.
+        Number of blocks, number of modes and number of displacements per block; index of the template's first
+        coordinate, of its nodes' first displacement and of its table's first entry.
     forward, backward : (n_entries,) float
-        The tables, ``(displacements, modes)`` each, and their transposes, one after the other.
+        The tables, ``(displacements, modes)`` each, and their transposes, concatenated over the templates.
     still : (1,) int
-        Place of the first displacement that is always zero.
+        Index of the first displacement that is always zero.
     nodal : float
         Buffer of the displacements.
     """
@@ -51,16 +51,16 @@ class ModalJoints(NamedTuple):
     Parameters
     ----------
     tables
-        Displacements of the nodes on joints.
+        Displacements of the nodes on joints, for templates whose tables are not folded.
     folded
-        Tables that are folded.
+        The folded tables.
     start : (nr + 1,) uint
-        First element of each run, then their number.
+        First element of each run, then the number of elements.
     places : (nr, 8) uint
-        Where the displacements of the nodes of each run's first element stand, side a's two ends before side b's, less
-        the number of that element; what is negative wraps round, and comes out right in a sum all the same.
+        Indices of the nodal displacements of each run's first element, the two ends of side a before those of side b,
+        minus the number of that element. Negative values wrap round; the sum with an element's number is still right.
     shares, weighted : (nr, n, 2, 4) float
-        What each displacement of a side has in the opening and in the slip of each point, and that times the area [m²].
+        Coefficients of a side's displacements in the opening and the slip of each point; the same times the area [m²].
     """
 
     tables: NodalTables
@@ -79,11 +79,11 @@ def nodal_tables(
     Parameters
     ----------
     templates
-        The first five entries of each row of `NodalTables.shapes`, and the table.
+        For each template the first five entries of its row of `NodalTables.shapes`, and its table.
     still
         Number of displacements of blocks that move.
     spare
-        How many displacements that are always zero follow.
+        Number of always-zero displacements after them.
     """
     first = np.cumsum([0, *(table.size for _, table in templates)])
     shapes = [(*shape, int(entry)) for (shape, _), entry in zip(templates, first, strict=False)]
@@ -100,13 +100,13 @@ def nodal_tables(
 def _product(
     table: Array, entry: Any, rows: Any, n: Any, factor: Array, first: Any, out: Array, at: Any, subtract: bool
 ) -> None:
-    """Sum of a table's rows, n long, each times a factor; or subtract them. A library's call takes longer."""
+    """Write the sum of a table's rows of length n, each times a factor, or subtract it; faster than a library call."""
     rows, first, at, step = np.uint64(rows), np.uint64(first), np.uint64(at), np.uint64(n)
     one, two, three, four = np.uint64(1), np.uint64(2), np.uint64(3), np.uint64(4)
     sense, i, end = -1.0 if subtract else 1.0, np.uint64(entry), np.uint64(entry) + step
     while i < end:
         j = i
-        if i + four <= end:  # four sums in registers: rows are too short for a loop over their vectors
+        if i + four <= end:  # four sums in registers, because rows are too short for a vectorised loop
             a = b = c = d = 0.0
             if subtract:
                 a, b, c, d = out[at], out[at + one], out[at + two], out[at + three]
@@ -140,9 +140,9 @@ def _products(
     at: Any,
     subtract: bool,
 ) -> None:
-    """Rows of `into`, n long, become a table ``(rows, terms)`` times rows of `source`, or less by that.
+    """Write a table ``(rows, terms)`` times rows of `source` to rows of `into`, n long, or subtract it from them.
 
-    The sums of a library's product have another order on another machine.
+    Not a library's product, because its order of summation depends on the machine.
     """
     n, two, three = np.uint64(n), np.uint64(2), np.uint64(3)
     sense = -1.0 if subtract else 1.0
@@ -152,7 +152,7 @@ def _products(
             for e in range(n):
                 into[out + e] = 0.0
         k, i = 0, np.uint64(source_at)
-        while k < terms:  # four terms at once, for rows are read and written as often as there are sums
+        while k < terms:  # four terms at once, because each pass reads and writes the whole row
             a, b, c, d = sense * table[r, k], 0.0, 0.0, 0.0
             i1 = i2 = i3 = i
             if k + 1 < terms:
@@ -168,7 +168,8 @@ def _products(
 
 
 @kernel
-def _alike_to_nodes(tables: NodalTables, motion: Array) -> None:
+def _repeated_to_nodes(tables: NodalTables, motion: Array) -> None:
+    """Nodal displacements of templates that have several blocks; see `to_nodes`."""
     shapes, table, nodal = tables.shapes, tables.forward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
@@ -178,7 +179,8 @@ def _alike_to_nodes(tables: NodalTables, motion: Array) -> None:
 
 
 @kernel
-def _alike_to_modes(tables: NodalTables, force: Array) -> None:
+def _repeated_to_modes(tables: NodalTables, force: Array) -> None:
+    """Modal forces of templates that have several blocks; see `to_modes`."""
     shapes, table, nodal = tables.shapes, tables.backward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
@@ -189,8 +191,8 @@ def _alike_to_modes(tables: NodalTables, force: Array) -> None:
 
 @kernel
 def to_nodes(tables: NodalTables, motion: Array) -> None:
-    """Displacements of the nodes, from modal coordinates ``(nd,)``."""
-    _alike_to_nodes(tables, motion)
+    """Write the displacements of the nodes, from modal coordinates ``(nd,)``."""
+    _repeated_to_nodes(tables, motion)
     for k in range(tables.shapes.shape[0]):
         blocks, modes, width, first, at, entry = tables.shapes[k]
         if blocks == 1:
@@ -199,8 +201,8 @@ def to_nodes(tables: NodalTables, motion: Array) -> None:
 
 @kernel
 def to_modes(tables: NodalTables, force: Array) -> None:
-    """Subtract from modal forces ``(nd,)`` those of the nodes."""
-    _alike_to_modes(tables, force)
+    """Subtract the nodal forces, projected on the modes, from modal forces ``(nd,)``."""
+    _repeated_to_modes(tables, force)
     for k in range(tables.shapes.shape[0]):
         blocks, modes, width, first, at, entry = tables.shapes[k]
         if blocks == 1:
@@ -219,7 +221,7 @@ def _combine(
     into_at: Any,
     add: bool,
 ) -> None:
-    """Make rows of `into` what a table's entries make of rows of `source`, or add it to them; rows are n long."""
+    """Write a sparse table times rows of `source`, which are n long, to rows of `into`, or add it to them."""
     start, column, value = entries
     for r in range(rows):
         begin, end = start[first_row + r], start[first_row + r + np.uint64(1)]
@@ -240,7 +242,7 @@ def _combine(
 
 @kernel
 def _sum_and_difference(i: Any, j: Any, n: Any, nodal: Array) -> None:
-    """Put the sum of two rows, n long, in place of the first and their difference in place of the second."""
+    """Replace the first of two rows of length n by their sum and the second by their difference."""
     for e in range(n):
         a, b = nodal[i + e], nodal[j + e]
         nodal[i + e] = a + b
@@ -249,7 +251,7 @@ def _sum_and_difference(i: Any, j: Any, n: Any, nodal: Array) -> None:
 
 @kernel
 def unfold(tables: FoldedTables, motion: Array, nodal: Array) -> None:
-    """Displacements of the nodes on joints of blocks whose tables are folded, from modal coordinates ``(nd,)``."""
+    """Write nodal displacements on joints for blocks with folded tables, from modal coordinates ``(nd,)``."""
     shapes, pairs, forward, _ = tables
     for k in range(shapes.shape[0]):
         n, _, width, first, at, row, _, pair, last = shapes[k]
@@ -260,7 +262,7 @@ def unfold(tables: FoldedTables, motion: Array, nodal: Array) -> None:
 
 @kernel
 def fold(tables: FoldedTables, nodal: Array, force: Array) -> None:
-    """Subtract from modal forces ``(nd,)`` those of the nodes on joints of such blocks; writes over the latter."""
+    """Subtract nodal forces of blocks with folded tables from modal forces ``(nd,)``; overwrites the nodal forces."""
     shapes, pairs, _, backward = tables
     for k in range(shapes.shape[0]):
         n, modes, _, first, at, _, row, pair, last = shapes[k]
@@ -272,28 +274,28 @@ def fold(tables: FoldedTables, nodal: Array, force: Array) -> None:
 
 @cache
 def modal_kernels(alone: bool) -> tuple[Kernel, Kernel]:
-    """Compile gather and scatter of `ModalJoints`, for walls in which blocks may be `alone` among their like or not.
+    """Compile gather and scatter of `ModalJoints`; `alone` says whether some templates have only one block.
 
-    Steps of small walls would be slower for the question. ``gather(motion, geometry, opening, slip)``
-    writes opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``, and ``scatter(normal,
-    tangential, geometry, force)`` subtracts from modal forces ``(nd,)`` what the tractions at the points [Pa] do.
+    A test for this in every step would slow small walls down. ``gather(motion, geometry, opening, slip)`` writes
+    opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``, and ``scatter(normal, tangential,
+    geometry, force)`` subtracts the forces of the points' tractions [Pa] from modal forces ``(nd,)``.
     """
-    nodes_of, modes_of = (to_nodes, to_modes) if alone else (_alike_to_nodes, _alike_to_modes)
+    nodes_of, modes_of = (to_nodes, to_modes) if alone else (_repeated_to_nodes, _repeated_to_modes)
 
     @kernel
     def gather_modes(motion: Array, geometry: ModalJoints, opening: Array, slip: Array) -> None:
         tables, folded, start, places, shares, _ = geometry
         nodal = tables.nodal
         nodes_of(tables, motion)
-        if folded.shapes.size:  # a small wall has none, and would pay for the call
+        if folded.shapes.size:  # small walls have no folded tables and are spared the call
             unfold(folded, motion, nodal)
-        # What does not move shares the last entries, which scatter has written to.
+        # All fixed nodes share the last entries, which scatter has written to.
         nodal[tables.still[0] :] = 0.0
         points = np.uint64(shares.shape[1])
         ne = np.uint64(opening.size) // points
         for run in range(places.shape[0]):
             low, high = start[run], start[np.uint64(run + 1)]
-            if high - low == 1:  # as all are where no two joints are alike
+            if high - low == 1:  # true for all runs if no two joints are alike
                 for p in range(points):
                     u = v = 0.0
                     for k in range(4):
@@ -341,7 +343,7 @@ def modal_kernels(alone: bool) -> tuple[Kernel, Kernel]:
                         share = shares[run, p, axis, k]
                         a, b = places[run, k], places[run, k + 4]
                         if share != 0.0:
-                            # The two sides apart, for a run may have one side's blocks a step behind the other's.
+                            # One loop per side: the ranges overlap if one side's blocks are a step behind the other's.
                             for e in range(low, high):
                                 nodal[a + e] -= share * traction[e]
                             for e in range(low, high):

@@ -1,4 +1,4 @@
-"""Stiffness, mass and strains of blocks that are all different, assembled at once, which is far cheaper."""
+"""Stiffness, mass and strains of many different blocks, assembled together, which is far cheaper than one by one."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -12,20 +12,20 @@ from runningbond.scene import Array
 from .operators import displacements, elasticity, inertia, mean_strains
 
 AT_ONCE = 500
-"""Blocks assembled together: more take memory and save nothing."""
+"""Number of blocks assembled together; larger groups take more memory and save no time."""
 
 
 class BlockOperators(NamedTuple):
-    """Operators of one block on nodes of its own ``(nn, 2)`` [m], its vertices first.
+    """Operators of one block, in the numbering of its own nodes.
 
     Parameters
     ----------
-    nodes
-        The nodes.
+    nodes : (nn, 2) float
+        The nodes [m], vertices first.
     stiffness, mass : (2 nn, 2 nn) float
-        Of unit thickness [Pa], and of unit density and thickness [m²].
+        Stiffness for unit thickness [Pa]; mass for unit density and thickness [m²].
     strain : (3 nt, 2 nn) sparse
-        As of `mean_strains`.
+        The operator of `mean_strains`.
     """
 
     nodes: Array
@@ -37,9 +37,9 @@ class BlockOperators(NamedTuple):
 def block_operators(
     mesh: WallMesh, blocks: Sequence[int], young: Array, poisson: Array, degree: int
 ) -> Iterator[BlockOperators]:
-    """Operators of some blocks, one after the other, on triangles of a degree.
+    """Operators of blocks, one after the other, on triangles of a polynomial degree.
 
-    Their moduli ``(n,)`` [Pa] are zero where they do not deform; ratios are Poisson's ``(n,)``.
+    Young's moduli ``(n,)`` [Pa] are zero for blocks that do not deform; `poisson` is Poisson's ratio ``(n,)``.
     """
     for start in range(0, len(blocks), AT_ONCE):
         part = slice(start, start + AT_ONCE)

@@ -1,8 +1,8 @@
-"""Potential cracks inside blocks: every triangle a piece of its own, held to the next by an inner joint.
+"""Potential cracks inside blocks: every triangle becomes a piece of its own, tied to its neighbours by inner joints.
 
-The scene says of what strength and stiffness inner joints are (`Scene.inner_joint`), and rigid blocks crack along
-their axis. In the mesh of such a scene that axis is one more line of edges between triangles; here all the others
-become joints too, of the same material. The paper puts such interfaces between all of its triangles (Sec. 5).
+The scene gives the strength and stiffness of inner joints (`Scene.inner_joint`). Rigid blocks crack along their axis
+only; the mesh of such a scene has triangle edges along that axis. Here all other edges between triangles become joints
+of the same material too. The paper puts such interfaces between all of its triangles (Sec. 5).
 """
 
 from dataclasses import dataclass, replace
@@ -20,27 +20,27 @@ from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Lo
 from .operators import edges_between, find_edges
 
 Cracks: TypeAlias = Literal["joints", "blocks"]
-"""Where a wall may crack: at its joints, or between all triangles of its blocks too."""
+"""Where a wall may crack: only at its joints, or also between all triangles of its blocks."""
 
-SAME = 1e-6
-"""How far the corners of congruent triangles may differ, as a fraction of the smallest one's size."""
+CONGRUENT = 1e-6
+"""Rounding unit of triangle corners when congruent triangles are detected, relative to the smallest triangle's size."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """What stays whole of a wall: its blocks, or their triangles.
+    """The parts of a wall that cannot crack: its blocks, or their triangles.
 
     Parameters
     ----------
     scene
-        The wall, with the pieces for its blocks. A joint between blocks keeps its number, and names the pieces at
-        its first end; it lies on as many more as it has elements.
+        The wall, with the pieces in place of its blocks. A joint between blocks keeps its number and names the pieces
+        at its first end only, although it lies on several pieces per side if it has several elements.
     mesh
-        Its mesh.
+        The mesh of the pieces.
     owner : (np,) int
         Block that each piece is part of.
     node : (nn,) int
-        Node of the whole blocks' mesh where each node is.
+        Node of the whole blocks' mesh that each node coincides with.
     """
 
     scene: Scene
@@ -57,7 +57,7 @@ class Pieces:
 def motion_of_blocks(wall: Pieces) -> csr_array:
     """Rigid motion of blocks per rigid motion of their pieces, ``(3 nb, 3 np)``.
 
-    A block's motion is the rigid one with the linear and the angular momentum of its pieces.
+    A block's motion is the rigid motion that has the linear and angular momentum of its pieces.
     """
     blocks, owner = wall.scene.blocks, wall.owner
     count = int(owner[-1]) + 1
@@ -76,9 +76,9 @@ def motion_of_blocks(wall: Pieces) -> csr_array:
 
 @dataclass(frozen=True, eq=False)
 class PassedOn(Action):
-    """A load on a wall's blocks, passed on to their pieces: those that touch a point share its force equally.
+    """A load on a wall's blocks, passed on to their pieces.
 
-    One along a line is cut where pieces begin and end: each has what lies along it.
+    All pieces that touch the point of a force share it equally. Loads along a line are cut where pieces begin and end.
     """
 
     load: Action
@@ -102,12 +102,12 @@ class PassedOn(Action):
         )
 
     def control(self, scene: Scene) -> tuple[Indices, Array, Array]:
-        """The control point that the load has on whole blocks, on the pieces that touch it."""
+        """The load's control point on whole blocks, with the pieces that touch it."""
         blocks, at, direction = self.load.control(self.wall)
         return np.concatenate([self._bearing(scene, block, at) for block in blocks]), at, direction
 
     def _bearing(self, scene: Scene, block: int, at: Array) -> Indices:
-        """The pieces that bear a force on a block: those that touch its point, or else the nearest."""
+        """The pieces that carry a force on a block: those that touch its point, or the nearest one if none does."""
         own = np.flatnonzero(self.owner == block)
         touched = np.intersect1d(own, scene.blocks.containing(at))
         if len(touched):
@@ -116,10 +116,11 @@ class PassedOn(Action):
 
 
 def added_compliance(parts: Pieces) -> float:
-    """How much inner joints give way, at most, over what the triangles beside them do.
+    """Largest compliance of an inner joint relative to that of the two triangles beside it.
 
-    E / (k d) of a joint of stiffness k, with the heights of both triangles over it d: a block in parts is softer than
-    its material by about so much. Joints that are stiff beside whole blocks are not beside small triangles.
+    It is E / (k d), with the joint's stiffness k and the sum d of both triangles' heights over the joint. A block in
+    triangles is softer than its material by about this ratio. Joints that are stiff compared with whole blocks may be
+    soft compared with small triangles.
     """
     scene, mesh = parts.scene, parts.mesh
     corner = mesh.points[mesh.triangles]
@@ -135,12 +136,12 @@ def added_compliance(parts: Pieces) -> float:
 
 
 def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
-    """Leave blocks whole, or part the movable ones but a beam into triangles.
+    """Leave blocks whole, or split all movable blocks except a beam into triangles.
 
     Raises
     ------
     SceneError
-        If blocks are to crack and the scene does not say at what strength, or has ties or supports that move.
+        If blocks are to crack and the scene gives no `inner_joint`, or has ties or supports that move.
     """
     if cracks not in ("joints", "blocks"):
         raise ValueError(f'cracks = {cracks!r}: must be "joints" or "blocks"')
@@ -160,16 +161,16 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     parts = np.where(whole, 1, np.bincount(mesh.triangle_block, minlength=len(number)))
     owner, first_piece = np.repeat(number, parts), np.cumsum(parts) - parts
     held = whole[owner]
-    # Triangles come in the order of their blocks, so the movable ones in that of their pieces.
+    # Triangles are sorted by block, so the movable ones are in the order of their pieces.
     piece = first_piece[mesh.triangle_block]
     piece[loose] = np.flatnonzero(~held)
-    first_node, node, triangles = _apart(mesh, owner, held, piece)
+    first_node, node, triangles = _split_nodes(mesh, owner, held, piece)
     points, block = mesh.points[node], np.repeat(np.arange(len(owner)), np.diff(first_node))
 
     old, new = edges_of(mesh.triangles), edges_of(triangles)
     a0, a1, b1, b0 = mesh.interfaces.T
     between = new[edges_between(old, a0, a1)], new[edges_between(old, b1, b0)]
-    # Every edge between two loose triangles, once.
+    # Every edge between two loose triangles, counted once.
     across, there = find_edges(old, old[:, 1], old[:, 0])
     one = np.flatnonzero(there & (np.arange(len(old)) < across) & np.repeat(loose, 3))
     inside = new[one], new[across[one]]
@@ -200,22 +201,22 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     return Pieces(parted, WallMesh(points, first_node, block, shape, triangles, piece, interfaces, joint), owner, node)
 
 
-def _apart(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> tuple[Indices, Indices, Indices]:
+def _split_nodes(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> tuple[Indices, Indices, Indices]:
     """Give every piece nodes of its own.
 
     Parameters
     ----------
     owner, held : (np,)
-        Block of each piece, and whether it is that block whole.
+        Block of each piece, and whether the piece is the whole block.
     piece : (nt,) int
         Piece of each triangle.
 
     Returns
     -------
     (np + 1,) int
-        First node of each piece.
+        First node of each piece, then the number of nodes.
     (nn,) int
-        Node of the mesh that each of the new ones is.
+        Node of the old mesh that each new node is a copy of.
     (nt, 3) int
         The triangles, on the new nodes.
     """
@@ -233,16 +234,16 @@ def _apart(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> tuple[
 
 
 def edges_of(triangles: Indices) -> Indices:
-    """Edges of triangles ``(nt, 3)`` in the sense in which these run round, ``(3 nt, 2)``."""
+    """Edges of triangles ``(nt, 3)``, directed as the triangles' vertices are ordered, ``(3 nt, 2)``."""
     return np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
 
 
 def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:
-    """Shape of each piece: the same for congruent triangles, node by node; held pieces each have their own."""
+    """Shape number of each piece: equal for triangles congruent node by node; every held piece has its own."""
     corner = points[first_node[:-1][~held][:, None] + np.arange(3)]
     side = corner[:, 1:] - corner[:, :1]
     size = np.sqrt(np.abs(np.linalg.det(side)).min())
-    _, shape = np.unique(np.rint(side.reshape(-1, 4) / (SAME * size)), axis=0, return_inverse=True)
+    _, shape = np.unique(np.rint(side.reshape(-1, 4) / (CONGRUENT * size)), axis=0, return_inverse=True)
     result = np.empty(len(held), dtype=np.int64)
     result[~held] = shape.ravel()
     result[held] = len(shape) + np.arange(held.sum())
@@ -250,7 +251,7 @@ def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:
 
 
 def _pins(scene: Scene, mesh: WallMesh, block: Indices, node: Indices, whole: Mask) -> Pins:
-    """Pins of the pieces: those that meet at a pinned corner are held there, a block that is `whole` as it was."""
+    """Pins of the pieces: all that meet at a pinned corner are held there; pins of `whole` blocks stay unchanged."""
     result = []
     for k, (owner, point) in enumerate(zip(scene.pins.block, scene.pins.point, strict=True)):
         there = np.flatnonzero(mesh.block[node] == owner)

@@ -1,15 +1,16 @@
-"""Kinematics of deformable blocks at finite displacements, each in a frame that turns with it.
+"""Kinematics of deformable blocks at finite displacements, each in a frame that rotates with the block.
 
 A node is at c + u + R(θ) (X + Σ φ_k q_k): centroid, translation and rotation of its block, and small deformations in
-the block's frame. A side of a block is the polygon of its nodes, and lies on a side of another block at the two ends
-of their overlap, as the sides of rigid blocks do (`contacts.rigid_sides`): there the corner of one block, rounded or
-sharp, rests on a facet of the other. Points inside a side, its nodes and others between those, rest on the other
-one's facets too, once they are farther from its corners than half-way to the next point, where the ends of the overlap
-bear for them.
+the block's frame. A side of a block is the polygon of its nodes. As with rigid blocks (`contacts.rigid_sides`), two
+sides touch at the two ends of their overlap, where the corner of one block, rounded or sharp, rests on a facet of the
+other. Points inside a side, which are its nodes and possibly others between them, also rest on facets of the other
+side if they are farther from its corners than half the distance to the next point. Closer to the corners, the ends of
+the overlap carry the load of these points.
 
-Tractions are forces on the two facets at the point where they touch, and so on the two nodes of each, with the same
-resultant and the same moment: where the nodes are, they act on their blocks' rigid coordinates, so that linear and
-angular momentum are kept to rounding; turned back into the block's frame, they are projected on its modes.
+Each contact's traction acts as a force on the two facets where they touch. It is distributed to the two nodes of each
+facet with the same resultant and the same moment. At their current positions, the nodal forces act on the blocks' rigid
+coordinates, which conserves linear and angular momentum to rounding; rotated back into the block's frame, they are
+projected on its modes.
 """
 
 import math
@@ -27,24 +28,24 @@ kernel = compiled.kernel
 
 
 class OutlineNodes(NamedTuple):
-    """Nodes on the outlines of blocks, side by side, each the start of a facet.
+    """Nodes on the outlines of blocks, sorted by side, each the start of a facet.
 
     Parameters
     ----------
     rigid : (nb, 3) int
-        Where the rigid coordinates of each block stand.
+        Indices of each block's rigid coordinates in the motion.
     centroid : (nb, 2) float
         Centroid of each undeformed block [m].
     owner : (no,) int
         Block of each node.
     arm : (no, 2) float
-        Place of each node from the centroid of its undeformed block [m].
+        Vector from the centroid of the undeformed block to each node [m].
     place : (no, 2) int
-        Where its displacements stand.
+        Indices of the node's displacements in `NodalTables.nodal`.
     following : (no,) int
         Next node counter-clockwise.
     begin, length : (no,) float
-        Distance along its side to each node, and length of the facet that starts there [m].
+        Distance along the side from its first corner to each node, and length of the facet that starts there [m].
     """
 
     rigid: Indices
@@ -58,16 +59,16 @@ class OutlineNodes(NamedTuple):
 
 
 class SidePoints(NamedTuple):
-    """Points along the sides of blocks, a number of them on each facet, the first one at its start.
+    """Points along the sides of blocks, the same number on each facet, the first one at the facet's start.
 
     Parameters
     ----------
     facet : (ns,) int
         Facet of each point.
     share : (ns,) float
-        Where it is on that.
+        Position of the point on its facet, from 0 at the start to 1 at the end.
     half : (ns,) float
-        Half-way to the nearer of the points beside it [m].
+        Half the distance to the nearer of the two neighbouring points [m].
     """
 
     facet: Indices
@@ -83,14 +84,14 @@ class Sides(NamedTuple):
     outer : (nv, 2) int
         First and last facet of each side.
     shares : (nv, 2) float
-        Share of each of them at which the arc of the corner touches it.
+        Position on these two facets, 0 at the start and 1 at the end, at which the arc of the corner touches them.
     extent, straight : (nv,) float
-        Length of the side, and between its arcs, with what it runs on by [m].
+        Length of the side, and its length between the arcs plus any extension behind a re-entrant corner [m].
     ends : (nv, 2) int
         Corners at its start and at its end.
     inset, radius : (nc,) float
-        Distance from the corner at which its arc touches its sides, negative behind a re-entrant corner to which a side
-        runs on, and the radius of that arc [m].
+        Distance from the corner at which its arc touches its sides, negative at the end of an extension behind a
+        re-entrant corner, and the radius of that arc [m].
     """
 
     outer: Indices
@@ -103,14 +104,14 @@ class Sides(NamedTuple):
 
 
 class PlacedNodes(NamedTuple):
-    """Where blocks, facets and arcs are in space.
+    """Current positions of blocks, facets and arcs in space.
 
     Parameters
     ----------
     blocks : (nb, 4) float
         Cosine and sine of each block's rotation, and its centroid [m].
     facets : (no, 5) float
-        Node that each facet starts from [m], its direction and one over its length [1/m].
+        Position of each facet's first node [m], the facet's direction, and the inverse of its length [1/m].
     arcs : (nv, 4) float
         Centres of the arcs at the two ends of each side [m].
     pushed : (no, 2) float
@@ -124,28 +125,28 @@ class PlacedNodes(NamedTuple):
 
 
 class DeformableSides(NamedTuple):
-    """What `gather_deformable` and `scatter_deformable` share.
+    """Arrays that `gather_deformable` and `scatter_deformable` share.
 
     Parameters
     ----------
     tables
-        Displacements of the outlines' nodes per deformation.
+        Displacements of the outlines' nodes per deformation mode.
     nodes, points, sides
         The outlines of the undeformed blocks.
     ends : (np, 6) int
-        As in `RigidSides`; of a point inside a side, that point after the number of corners, the side it is near, 1
-        where that is block b's, the corner after that side, and the two sides e and f.
+        As in `RigidSides`. For a point inside a side: the number of corners plus the point's number, the side that the
+        point is near, 1 if that side is block b's, the corner after that side, and the two sides e and f.
     inwards : (np,) float
-        1 where inwards is along the tangent of f, −1 where it is against it, 0 for a point inside a side.
+        1 if the tangent of f points into the overlap, −1 if it points out of it, 0 for a point inside a side.
     area : (np,) float
-        Area that each contact stands for [m²].
+        Area that each contact represents [m²].
     placed
-        Written by `gather_deformable`: the outlines in space.
+        Current positions of the outlines, written by `gather_deformable`.
     contact : (np, 8) float
-        Written by it: point [m] and normal of each contact, the shares of the facets of b and a at which it is, the
-        stretch along which its slip is measured, and its `turn_out`.
+        Written by `gather_deformable`: point [m] and normal of each contact, its positions on the facets of b and a (0
+        to 1), undeformed over current length of the facet along which it slips, and the factor `out` of `turn_out`.
     touched : (np, 3) int
-        Written by it: the facets of b and a, and 1 where a's corner rests on b.
+        Written by `gather_deformable`: the facets of b and a, and 1 if a's corner or point rests on b or arcs touch.
     """
 
     tables: NodalTables
@@ -162,7 +163,7 @@ class DeformableSides(NamedTuple):
 
 @kernel
 def place_nodes(motion: Array, tables: NodalTables, nodes: OutlineNodes, placed: PlacedNodes) -> None:
-    """Write where blocks and facets are after a motion ``(nd,)``."""
+    """Write the positions of blocks and facets after a motion ``(nd,)``."""
     rigid, centroid, owner, arm, place, following, _, _ = nodes
     turned, facets, _, _ = placed
     nodal = tables.nodal
@@ -204,7 +205,7 @@ def _place_arcs(sides: Sides, facets: Array, arcs: Array) -> None:
 
 @kernel
 def _facet_at(along: float, begin: Array, first: int, last: int) -> int:
-    """Facet of a side, from its first to its last, that a way along the side from its first corner leads to."""
+    """Facet at a distance along a side from its first corner, found by bisection between the first and the last."""
     while last > first:
         middle = (first + last + 1) // 2
         if begin[middle] <= along:
@@ -215,10 +216,10 @@ def _facet_at(along: float, begin: Array, first: int, last: int) -> int:
 
 
 @kernel
-def _onto(x: float, y: float, facets: Array, begin: Array, length: Array, ends: Indices) -> tuple[int, float, float]:
-    """Facet of a side, given its first and last, that a point lies over, its share of that, and its way along the side.
+def _project(x: float, y: float, facets: Array, begin: Array, length: Array, ends: Indices) -> tuple[int, float, float]:
+    """Facet of a side, given its first and last, that a point projects on, and its positions on facet and side.
 
-    Sides are straight but for small deformations, so that any facet has their direction.
+    Sides are straight except for small deformations, so any facet has the direction of its side.
     """
     j, last = ends[0], ends[1]
     if last > j:
@@ -230,7 +231,7 @@ def _onto(x: float, y: float, facets: Array, begin: Array, length: Array, ends: 
 
 @kernel
 def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, slip: Array) -> None:
-    """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``."""
+    """Write opening and slip ``(np,)`` of contacts [m], from motions ``(nd,)``."""
     tables, nodes, points, sides, ends, inwards, _, placed, contact, touched = geometry
     begin, length = nodes.begin, nodes.length
     outer, shares, extent, straight, corners, inset, radius = sides
@@ -243,32 +244,32 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
         stretch, out = 1.0, 0.0
         on_arc = False
         if sense == 0.0:
-            # A point inside a side; the row has it in place of a corner v, beyond the number of corners.
+            # A point inside a side: v is the number of corners plus the point's number.
             of_a = ends[k, 2] == 1
             side = e if of_a else f
             point, r = v - radius.size, 0.0
             own, share_own = points.facet[point], points.share[point]
             way = share_own / facets[own, 4]
             x, y = facets[own, 0] + way * facets[own, 2], facets[own, 1] + way * facets[own, 3]
-            j, share, moved = _onto(x, y, facets, begin, length, outer[side])
+            j, share, moved = _project(x, y, facets, begin, length, outer[side])
             nx, ny = facets[j, 3], -facets[j, 2]
             away = (x - facets[j, 0]) * nx + (y - facets[j, 1]) * ny
             stretch = length[j] * facets[j, 4]
             inside = min(moved - inset[corners[side, 0]], extent[side] - inset[corners[side, 1]] - moved)
             away = max(away, points.half[point] - inside)
         else:
-            # Side e's last corner lies at f's first one where inwards is along the tangent.
+            # If the tangent points into the overlap, e's last corner is near f's first one.
             low = sense > 0.0
             of_e, of_f = (1, 0) if low else (0, 1)
             x, y, r = arcs[e, 2 * of_e], arcs[e, 2 * of_e + 1], radius[v]
             wx, wy, r_w = arcs[f, 2 * of_f], arcs[f, 2 * of_f + 1], radius[w]
             own, share_own = outer[e, of_e], shares[e, of_e]
             side, end, far = f, 1 - of_f, ends[k, 3]
-            j, share, along = _onto(x, y, facets, begin, length, outer[f])
+            j, share, along = _project(x, y, facets, begin, length, outer[f])
             on = along - inset[w] if low else extent[f] - inset[w] - along
             of_a = False
             if on < 0.0:
-                i, share_e, along = _onto(wx, wy, facets, begin, length, outer[e])
+                i, share_e, along = _project(wx, wy, facets, begin, length, outer[e])
                 on_e = extent[e] - inset[v] - along if low else along - inset[v]
                 of_a = on_e >= 0.0
                 on_arc = not of_a and r + r_w > 0.0
@@ -322,23 +323,23 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
 
 @kernel
 def reframe_deformable(geometry: DeformableSides, frames: Frames, history: Array) -> None:
-    """After `gather_deformable`, as `reframe_sharp` does."""
+    """Convert histories after `gather_deformable`, as `reframe_sharp` does after `gather_sharp`."""
     _reframe(geometry, frames, history, True)
 
 
 @kernel
 def reframe_open(geometry: DeformableSides, frames: Frames, history: Array) -> None:
-    """The same of points that are open alone, as across a crack.
+    """As `reframe_deformable`, only for points that are open, as across a crack.
 
-    Corners that are pressed into each other change sides with every tremor of their blocks, by next to nothing each
-    time; retold as often, a wall under a dead load never comes to rest.
+    Corners pressed into each other change sides with every small vibration, each time by almost nothing. If their
+    histories were converted each time, a wall under dead load would never come to rest.
     """
     _reframe(geometry, frames, history, False)
 
 
 @kernel
 def _reframe(geometry: DeformableSides, frames: Frames, history: Array, pressed_too: bool) -> None:
-    """Retell what points have been through whose corners have gone over to another side."""
+    """Convert the histories of contacts that now rest on the other block's side; `pressed_too`, closed ones as well."""
     _, _, _, sides, ends, inwards, _, placed, _, touched = geometry
     (facets, arcs), (bore, plastic) = (placed.facets, placed.arcs), frames
     for k in range(bore.size):
@@ -360,7 +361,7 @@ def _reframe(geometry: DeformableSides, frames: Frames, history: Array, pressed_
 
 @kernel
 def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSides, force: Array) -> None:
-    """Subtract from forces ``(nd,)`` what the contacts' tractions ``(np,)`` do on the modes."""
+    """Subtract the modal forces of the contacts' tractions ``(np,)`` [Pa] from forces ``(nd,)``."""
     tables, nodes, _, _, _, _, area, placed, contact, touched = geometry
     following, (_, facets, _, pushed) = nodes.following, placed
     pushed[:] = 0.0
@@ -372,13 +373,13 @@ def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSid
         shear *= contact[k, 6]
         fx = -pull * nx + shear * ny
         fy = -pull * ny - shear * nx
-        # On b, and the opposite on a.
+        # The force on b, then its opposite on a.
         for side in range(2):
             j, share = touched[k, side], contact[k, 4 + side]
             after = following[j]
             tx, ty, inverse = facets[j, 2], facets[j, 3], facets[j, 4]
             along = share / inverse
-            # The point may be off the facet by a penetration or a radius: a couple on its two nodes.
+            # The point may be off the facet by a penetration or a radius, which adds a couple on the two nodes.
             off_x, off_y = x - facets[j, 0] - along * tx, y - facets[j, 1] - along * ty
             couple = (off_x * fy - off_y * fx) * inverse
             gx, gy = (1.0 - share) * fx + couple * ty, (1.0 - share) * fy - couple * tx
@@ -393,7 +394,7 @@ def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSid
 
 @kernel
 def _push_nodes(nodes: OutlineNodes, placed: PlacedNodes, nodal: Array, force: Array) -> None:
-    """Forces on outline nodes in space: add them to those of their blocks, and write the opposite in these's frames."""
+    """Add the forces on outline nodes to the blocks' rigid forces; write their opposites in the blocks' frames."""
     rigid, _, owner, _, place, _, _, _ = nodes
     turned, facets, _, pushed = placed
     nodal[:] = 0.0

@@ -1,9 +1,9 @@
-"""Eigenvectors of small matrices, to the last bit the same on all machines.
+"""Eigenvectors of small matrices, identical to the last bit on all machines.
 
-What a wall of many blocks bears may turn on the last bit of a number, and a linear algebra library's products and
-eigenvectors differ in it with the width of vector registers and the number of threads. Here every sum has one order:
-Jacobi's rotations (Golub & Van Loan 2013, Sec. 8.5), Gram and Schmidt's projections, `numpy.einsum` and products of
-sparse matrices, which call no such library.
+The collapse load of a wall of many blocks may depend on the last bit of a number, and in linear algebra libraries that
+bit of products and eigenvectors depends on the width of vector registers and the number of threads. Here every sum has
+a fixed order: Jacobi rotations (Golub & Van Loan 2013, Sec. 8.5), Gram-Schmidt projections, `numpy.einsum` and
+products of sparse matrices, none of which calls such a library.
 """
 
 import math
@@ -17,11 +17,11 @@ from runningbond.scene import Array, complement
 kernel = compiled.kernel
 
 SWEEPS = 30
-"""Most sweeps of rotations, which converge quadratically."""
+"""Maximum number of Jacobi sweeps; they converge quadratically."""
 
 
 def symmetric_eigenvectors(matrix: Array) -> tuple[Array, Array]:
-    """Eigenvalues ``(n,)`` of a symmetric matrix ``(n, n)``, ascending, and eigenvectors ``(n, n)``, a column each."""
+    """Eigenvalues ``(n,)`` of a symmetric matrix ``(n, n)``, ascending, and eigenvectors as columns ``(n, n)``."""
     rest, vectors = matrix.copy(), np.eye(len(matrix))
     _rotate(rest, vectors)
     own = np.diag(rest)
@@ -30,26 +30,26 @@ def symmetric_eigenvectors(matrix: Array) -> tuple[Array, Array]:
 
 
 def eigenvectors(K: Array, M: Array, within: Array, zero: Array) -> tuple[Array, Array]:
-    """Solutions of K x = ω² M x in the span of some columns, on which some rows are zero.
+    """Solutions of K x = ω² M x in the span of given columns, subject to homogeneous linear constraints.
 
     Parameters
     ----------
     K, M : (n, n) float
-        Symmetric matrices; M has an inverse.
+        Symmetric matrices; M is invertible.
     within : (n, m) float
-        The columns, which are independent.
+        The columns, linearly independent.
     zero : (k, n) float
-        The rows.
+        The constraints: ``zero @ x`` is zero for every solution x.
 
     Returns
     -------
     (d,) and (n, d) float
-        ω², ascending, and as many x as there are, of xᵀ M x = 1.
+        ω², ascending, and all solutions x as columns, normalised to xᵀ M x = 1.
     """
     rows = np.einsum("kn,nm->km", zero, within)
     basis = np.ascontiguousarray(np.einsum("nm,md->dn", within, complement(rows)))
     mass, stiffness = csr_array(M), csr_array(K)
-    for _ in range(2):  # once leaves them as orthogonal as the basis was well-conditioned
+    for _ in range(2):  # after one pass orthogonality is only as good as the basis was conditioned
         _orthonormalise(basis, mass.indptr, mass.indices, mass.data)
     own, turn = symmetric_eigenvectors(np.einsum("in,nj->ij", basis, stiffness @ basis.T))
     return own, np.einsum("in,ij->nj", basis, turn)
@@ -57,7 +57,7 @@ def eigenvectors(K: Array, M: Array, within: Array, zero: Array) -> tuple[Array,
 
 @kernel
 def _orthonormalise(vectors: Array, start: Array, column: Array, value: Array) -> None:
-    """Make rows ``(d, n)`` orthonormal, in place, with a sparse matrix ``(n, n)``."""
+    """Make rows ``(d, n)`` orthonormal in place, with the inner product of a sparse matrix ``(n, n)``."""
     d, n = vectors.shape
     image = np.empty(n)
     for i in range(d):
@@ -83,7 +83,7 @@ def _orthonormalise(vectors: Array, start: Array, column: Array, value: Array) -
 
 @kernel
 def _rotate(matrix: Array, vectors: Array) -> None:
-    """Make a symmetric matrix diagonal, in place, by rotations, which rows of `vectors` are turned by as well."""
+    """Diagonalise a symmetric matrix in place by rotations, and apply them to the rows of `vectors` as well."""
     n = len(matrix)
     for _ in range(SWEEPS):
         turned = False

@@ -1,7 +1,7 @@
 """Fictitious inertia of deformable blocks under loads that grow slowly (`runningbond.dynamics.inertia`).
 
-Rigid motions are made as slow as those of rigid blocks. What is left to limit the step are deformations that are stiff
-against their blocks but no stiffer than the joints: their masses are scaled for the joints' share as well.
+Rigid motions are slowed down as those of rigid blocks are. The step is then limited by fast deformations whose own
+stiffness is no larger than that of the joints: their masses are scaled for their share of the joints' stiffness too.
 """
 
 from dataclasses import replace
@@ -16,14 +16,14 @@ from .system import DAMPING
 
 
 def with_fictitious_inertia(wall: ModalWall, system: BlockSystem) -> BlockSystem:
-    """Give a wall's blocks inertia that allows long steps.
+    """Give a wall's blocks inertia that allows long time steps.
 
     Parameters
     ----------
     wall
         The wall.
     system
-        Its blocks.
+        The wall's blocks.
     """
     rigid = _heavier(wall)
     scaled = scaled_modes(rigid, DAMPING, allowance=AT_REST)
@@ -39,7 +39,7 @@ def with_fictitious_inertia(wall: ModalWall, system: BlockSystem) -> BlockSystem
 
 
 def _heavier(wall: ModalWall) -> ModalWall:
-    """The wall with heavier rigid motions; blocks of one template share the largest factors of any of them."""
+    """The wall with more inertia in rigid motions; all blocks of a template get the largest factors among them."""
     factors, templates = inertia_factors(wall.scene, wall.elements.points, wall.mass[wall.rigid]), []
     for template in wall.templates:
         scale = np.ones_like(template.modes.mass)

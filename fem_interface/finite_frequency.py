@@ -1,4 +1,4 @@
-"""The largest frequency of deformable blocks on contacts at finite displacements: a bound, from each block alone."""
+"""Upper bound of the highest frequency of deformable blocks at finite displacements, from each block by itself."""
 
 from collections.abc import Iterator
 from typing import TypeAlias
@@ -13,11 +13,11 @@ from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices
 
 from .deformable_sides import DeformableSides, gather_deformable
-from .mass_scaling import CLOSE, ScaledModes
+from .mass_scaling import FREQUENCY_TOLERANCE, ScaledModes
 from .node_outline import NodeOutline
 
 Blocks: TypeAlias = tuple[Array, Array, Array, Array]
-"""Blocks of as many modes: their shares of contacts ``(n, m, m)``, masses, stiffness and viscosity ``(n, m)``."""
+"""Blocks with equally many modes: share of contact stiffness ``(n, m, m)``; mass, stiffness, viscosity ``(n, m)``."""
 
 
 def frequency_squared(
@@ -28,18 +28,18 @@ def frequency_squared(
     law: KernelLaw,
     guess: float,
 ) -> float:
-    """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
+    """Upper bound of the largest ω² [1/s²] with all contacts closed: each block on its share of their stiffness.
 
-    The viscosity of the deformations counts as in `stable_step`.
+    The viscosity of the deformations is included, at the step of `stable_step`.
 
     Parameters
     ----------
     blocks, scaled
         The blocks, and the masses and viscosities of their modes.
     contacts, geometry, law
-        The contacts, the arrays of their kernels, which are written to, and their law.
+        The contacts, the arrays of their kernels, which are overwritten, and their law.
     guess
-        What the bound is near [1/s²].
+        Starting value of the bound [1/s²].
     """
     alike: dict[int, list[Blocks]] = {}
     for each in _blocks_on(blocks, scaled, contacts, geometry, law):
@@ -53,7 +53,7 @@ def frequency_squared(
             bound = max(bound, float(block_frequency_squared(with_own, mass).max()))
         if bound <= square:
             return bound
-        square = bound * (1 + CLOSE)
+        square = bound * (1 + FREQUENCY_TOLERANCE)
 
 
 def _blocks_on(
@@ -63,12 +63,12 @@ def _blocks_on(
     geometry: DeformableSides,
     law: KernelLaw,
 ) -> Iterator[Blocks]:
-    """The blocks of each template, on contacts."""
+    """The blocks of each template, with their shares of the contacts' stiffness."""
     wall = blocks.wall
     motion = np.zeros(len(scaled.mass))
     motion[wall.rigid] = contacts.motion.reshape(-1, 3)
     gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
-    # A row a block that a contact is on: first all blocks b, then all blocks a.
+    # One row per contact and block: first all blocks b, then all blocks a.
     facet = geometry.touched[:, :2].T.ravel()
     block, share, n = blocks.nodes.owner[facet], geometry.contact[:, 4:6].T.ravel(), len(contacts)
     mass = scaled.mass[wall.rigid[:, 0]]
@@ -104,7 +104,8 @@ def _add_springs(
 ) -> None:
     """Add the stiffness of contacts ``(n,)``, normal and shear ``weight`` ``(n, 2)`` [N/m], to blocks' ``(nb, m, m)``.
 
-    Each contact is on the block at its place, between two rows of the ``table`` ``(no, 2, m - 3)``, at a share.
+    Contact k is on block ``place[k]``, between rows ``start[k]`` and ``stop[k]`` of the ``table`` ``(no, 2, m - 3)``,
+    at ``share[k]`` of the way.
     """
     m = own.shape[1]
     row = np.zeros(m)

@@ -1,9 +1,9 @@
-"""Deformable blocks at finite displacements, whose contacts are sought anew as they move.
+"""Deformable blocks at finite displacements, whose contacts are detected again as they move.
 
-Deformations are small in the frame of their block, which turns with it. Left out are what turning does to them and
-they to it: the centrifugal and Coriolis forces on the deformations and the change of a block's moment of inertia.
-They strain a block by the square of its corners' speed over that of sound in it, 1e-5 at 10 m/s in brick, and change
-its inertia by its strain.
+Deformations are small in the frame of their block, which rotates with it. The coupling of rotation and deformation is
+neglected: centrifugal and Coriolis forces on the deformations, and the change of a block's moment of inertia. These
+forces would strain a block by the square of the ratio of its corners' speed to the speed of sound, 1e-5 at 10 m/s in
+brick; the relative change of inertia is of the order of the strain.
 """
 
 from dataclasses import replace
@@ -32,7 +32,7 @@ from .system import DAMPING, block_system
 
 
 def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSystem:
-    """Set up the deformable blocks of a wall to move far; `mass_scaling` as `fem_interface.model.fem` has it."""
+    """Set up a wall's deformable blocks at finite displacements; `mass_scaling` as in `fem_interface.model.fem`."""
     contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, DAMPING, mass_scaling=mass_scaling)
     interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
     system, forces = block_system(blocks.wall, scaled, interface), blocks.wall.forces_by_piece
@@ -40,7 +40,8 @@ def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSys
 
 
 HALF = 0.5 + 1e-6
-"""More than half-way to the next point, for all rounding: how far inside the arcs of corners one bears."""
+"""Part of the distance to the next point by which a point must be inside the corners' arcs to carry load: one half,
+plus a margin for rounding."""
 
 
 class DeformableContacts:
@@ -61,15 +62,15 @@ class DeformableContacts:
         self.undeformed = replace(undeformed, area=area, glued=undeformed.joint >= 0)
 
     def find(self, motion: Array, margin: float) -> Contacts:
-        """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then points in them."""
+        """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then points inside them."""
         rigid = self.blocks.rigid(motion)
         ends = find_contacts(self.outline, rigid, margin)
         corner, _ = resting(self.outline, ends, rigid)
         v, _, _, _, e, f = ends.ends.astype(np.int64).T
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
-        # The corner inwards is the last of side e and the first of f at the low end, and the other way at the high.
+        # The inner corner is the last of side e or the first of f at the low end, and the reverse at the high end.
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
-        # An end stands for its side up to half-way from the first point that is far enough inside the arc to bear.
+        # An end represents its side up to half a spacing before the first point far enough inside to carry load.
         length = self.blocks.nodes.length[facet] / self.blocks.parts
         passed = np.floor(np.maximum(self.blocks.sides.inset[corner], 0.0) / length + HALF)
         area = np.minimum(ends.area, self.outline.thickness_between(e, f) * (passed + 0.5) * length)
@@ -91,9 +92,9 @@ class DeformableContacts:
         return self._materials.side_by_side(contacts)
 
     def _areas(self, contacts: Contacts) -> Array:
-        """Areas ``(n,)`` [m²] of contacts on the undeformed wall, by trapezoids whose sum is the area of their joint.
+        """Areas ``(n,)`` [m²] of contacts on the undeformed wall, by trapezoids that add up to the area of their joint.
 
-        What is under the arcs of corners is shared by all of the joint.
+        The area under the arcs of corners is distributed over all contacts of the joint.
         """
         geometry, (opening, _) = self.geometry(contacts), (jumps := np.zeros((2, len(contacts))))
         gather_deformable(np.zeros(len(self.blocks.wall.mass)), tuple(geometry), *jumps)
@@ -111,7 +112,7 @@ class DeformableContacts:
         return area
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
-        """Points inside one of two facing sides that are near the other: of block b's, unless that one is held."""
+        """Points inside one of two facing sides that are near the other: points of block b, or of a if b is held."""
         outline, first = self.outline, self.blocks.first * self.blocks.parts
         nodes, points, inset = self.blocks.nodes, self.blocks.points, self.blocks.sides.inset[outline.ends]
         owner, after = outline.blocks.owner, outline.blocks.successor
@@ -133,7 +134,7 @@ class DeformableContacts:
         away = ((at - corners[on]) * arcs[on, 2:]).sum(axis=1)
         along = ((at - corners[on]) * run).sum(axis=1) / length
         opposed = -(arcs[own, 2:] * arcs[other, 2:]).sum(axis=1)[pair] > np.cos(np.pi / 4)
-        # Those that are still to come farther from the other side's corners before they bear are near them only.
+        # Leave out points that are too near the other side's corners to carry load before they move by the margin.
         inside = np.minimum(along - inset[on, 0], length - inset[on, 1] - along)
         near = opposed & (np.abs(away) < margin) & (points.half[point] - inside < margin) & self._bearing[point]
         point, pair, on = point[near], pair[near], on[near]
@@ -146,7 +147,7 @@ class DeformableContacts:
 
     @cached_property
     def _bearing(self) -> Mask:
-        """Which points along sides are half-way to the next one inside the arcs of their side's corners."""
+        """Which points are half-way to the next one (`HALF`) inside the arcs of their own side's corners, ``(ns,)``."""
         (facet, share, half), nodes, sides = self.blocks.points, self.blocks.nodes, self.blocks.sides
         side = np.repeat(np.arange(len(sides.extent)), np.diff(self.blocks.first))[facet]
         near_end, far_end = (sides.inset[sides.ends[side, end]] for end in (0, 1))
@@ -155,7 +156,7 @@ class DeformableContacts:
         return np.asarray(inside > 2 * HALF * half)
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
-        """The arrays that `gather_deformable` and `scatter_deformable` share, with buffers of their own."""
+        """The arrays that `gather_deformable` and `scatter_deformable` share, with new buffers."""
         blocks, n = self.blocks, len(contacts)
         placed = PlacedNodes(
             np.zeros((len(self.outline.blocks), 4)),
@@ -178,11 +179,11 @@ class DeformableContacts:
 
     def interface_on(self, contacts: Contacts, system: BlockSystem) -> Interface:
         """The interface of a system's blocks on contacts."""
-        # From the same guess each time: the bound must not depend on the contacts that came before.
+        # Always the same guess, because the bound must not depend on earlier contacts.
         return self.interface(contacts, system, system.interface.frequency_squared)
 
     def interface(self, contacts: Contacts, scaled: ScaledModes | BlockSystem, guess: float) -> Interface:
-        """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
+        """The interface of blocks with scaled modes on contacts; the bound of ω² [1/s²] is iterated from a guess."""
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = frequency_squared(self.blocks, scaled, contacts, geometry, law, guess)
         kernels = gather_deformable, scatter_deformable
@@ -190,38 +191,38 @@ class DeformableContacts:
         return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe)
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
-        """A key of each contact and its number, two ``(n,)``: contacts are points."""
+        """A key and a number of each contact, two ``(n,)``, because every contact is a point."""
         return contacts.points()
 
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
-        """As of `ContactSearch`, at joint elements' points: each has its part of the nearest contact's force."""
+        """See `ContactSearch`; each joint element's point gets its part of the nearest contact's force."""
         key, share = self._joint_points
         at = position_of(contacts.key, key)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])
         part = np.where(np.arange(6)[:, None] // 2 == 1, share, 1.0)
-        return np.column_stack([values, lost])[:, at] * part  # -1, of those that are none, is the last
+        return np.column_stack([values, lost])[:, at] * part  # -1, for contacts that are lost, is the last column
 
     def _gathered(self, contacts: Contacts, motion: Array) -> DeformableSides:
-        """The geometry of contacts where a motion ``(nd,)`` has taken them."""
+        """The geometry of contacts after a motion ``(nd,)``."""
         geometry = self.geometry(contacts)
         gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
         return geometry
 
     def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """As of `ContactSearch`."""
+        """Forces in space; see `ContactSearch`."""
         contact = self._gathered(contacts, motion).contact
         pull, shear = turn_out.py_func(*force, contact[:, 7])
         return in_space(pull, shear * contact[:, 6], contact[:, 2:4])
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """As of `ContactSearch`."""
+        """Forces and moments on the blocks; see `ContactSearch`."""
         contact = self._gathered(contacts, motion).contact
         pull, shear = turn_out.py_func(*force, contact[:, 7])
         return contacts.resultants(self.outline, contact[:, :4], np.array([pull, shear * contact[:, 6]]))
 
     @cached_property
     def _joint_points(self) -> tuple[Indices, Array]:
-        """Key of the contact of the same joint nearest to each joint point, and the point's part of its area."""
+        """Key of the nearest contact of each joint point's joint, and the point's part of that contact's area."""
         contacts, points = self.undeformed, self.blocks.wall.elements.points
         geometry = self._gathered(contacts, np.zeros(len(self.blocks.wall.mass)))
         nearest = np.zeros(len(points), dtype=np.int64)
@@ -233,7 +234,7 @@ class DeformableContacts:
         return contacts.key[nearest], points.area / area[nearest]
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
-        """A number of the corner or point that rests and the side it rests on, for each contact."""
+        """A number for each contact that identifies the corner or point that rests and the side it rests on."""
         geometry = self._gathered(contacts, motion)
         of_a = geometry.touched[:, 2] == 1
         v, w, _, _, e, f = contacts.ends.astype(np.int64).T
@@ -242,7 +243,7 @@ class DeformableContacts:
         return np.asarray(corner * 2**32 + side)
 
     def deformation(self, motion: Array) -> float:
-        """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
+        """Upper bound of an outline node's displacement by deformation in a motion ``(nd,)`` [m]."""
         pairs = zip(self.blocks.tables, self.blocks.wall.split(motion), strict=True)
         far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for table, Q in pairs]
         return float(np.sqrt(2) * max(far, default=0.0))

@@ -1,8 +1,8 @@
 """Fracture energies of joints after the paper's Eqs. 4–5, as they should read and as they are printed.
 
-Linear fracture mechanics gives G = K² / E with K² = π l × (strength in that mode)²: opening (I) is resisted by the
-tensile strength f_t, slip (II) by the cohesion c. The paper prints the two strengths the other way round, and takes
-the block's width b for the length of a bed joint, which is half of it in running bond.
+Linear fracture mechanics yields G = K² / E with K² = π l × (strength in that mode)²: the tensile strength f_t resists
+opening (I), the cohesion c resists slip (II). The paper prints the two strengths the other way round, and uses the
+block's width b as the length of a bed joint, which in running bond is only half of b.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from runningbond.joints.mohr_coulomb import truncated_cone
 from runningbond.scene import Array, Indices, JointMaterial, Mortar, Scene, SceneError, table_of
 
 Energies: TypeAlias = Literal["given", "corrected", "printed"]
-"""Fracture energies of the scene; of Eqs. 4–5 with the strengths in their places; of Eqs. 4–5 as printed."""
+"""Fracture energies given by the scene; from Eqs. 4–5 with the strengths corrected; from Eqs. 4–5 as printed."""
 
 
 def corrected_energies(length: float, cohesion: float, tension: float, young: float) -> tuple[float, float]:
@@ -29,20 +29,20 @@ def printed_energies(length: float, cohesion: float, tension: float, young: floa
 
 
 def fractured(scene: Scene, energies: Energies) -> tuple[Sequence[JointMaterial], Indices]:
-    """Materials of a scene's joints with their fracture energies, and which of them each joint is of, ``(nj,)``.
+    """Materials of a scene's joints with their fracture energies, and the number of each joint's material, ``(nj,)``.
 
-    Inner joints are not of mortar, and always have the energies of the scene.
+    Inner joints are not made of mortar and always keep the energies of the scene.
 
     Raises
     ------
     SceneError
-        If energies are to follow from a mortar that is not given.
+        If energies are to be computed from a mortar that is not given.
     """
     if energies == "given":
         return scene.materials_of_joints, scene.material_number_of_joint
     formula = corrected_energies if energies == "corrected" else printed_energies
     length = _printed_length(scene) if energies == "printed" else scene.joints.length
-    # Lengths that differ by rounding make one material.
+    # Joints whose lengths differ only by rounding share one material.
     rounded = np.where(scene.joints.inner, 0.0, np.rint(length / scene.blocks.tolerance))
     keys = np.column_stack([scene.material_of_joint, rounded])
     _, first, kind = np.unique(keys, axis=0, return_index=True, return_inverse=True)
@@ -63,7 +63,7 @@ def fractured(scene: Scene, energies: Energies) -> tuple[Sequence[JointMaterial]
 
 
 def _printed_length(scene: Scene) -> Array:
-    """Length that the paper takes: of the block's side, b for a bed joint and a for a head joint."""
+    """Joint lengths that the paper uses, those of the block's sides: b for a bed joint and a for a head joint."""
     if scene.bond is None:
         return scene.joints.length
     return np.where(scene.joints.is_bed, scene.bond.width, scene.bond.height)

@@ -1,4 +1,4 @@
-"""By how much heavier masses slow a wall's lowest vibrations."""
+"""Reduction of a wall's lowest natural frequencies by larger masses."""
 
 from collections.abc import Callable
 
@@ -14,17 +14,17 @@ from runningbond.scene import Array
 from .modal_wall import ModalWall
 from .operators import nodal_jump
 
-GROUND = 1e-9
-"""Springs to the ground, in masses times the square of the wall's highest frequency: what floats vibrates too."""
+GROUND_STIFFNESS = 1e-9
+"""Stiffness of springs to the ground per mass, relative to the largest ω²; they let floating bodies vibrate too."""
 
 DENSE = 400
-"""Coordinates of a body up to which its matrices are taken as full ones."""
+"""Number of coordinates of a body up to which its matrices are dense; larger ones are sparse."""
 
 
 def modal_stiffness(wall: ModalWall, *, closed: bool = False) -> csr_array:
-    """Stiffness of a wall none of whose joints is open, in the coordinates that move, ``(n, n)`` [N/m].
+    """Stiffness of a wall with no open joints, in the moving coordinates, ``(n, n)`` [N/m].
 
-    Joints that close under pressure are as stiff as without any, or, where they are `closed`, as they ever get.
+    Joints that close under pressure have their initial stiffness or, if `closed`, their largest.
     """
     of_node, of_coordinate, values = [], [], []
     for template, first in zip(wall.templates, wall.first, strict=False):
@@ -45,16 +45,16 @@ def modal_stiffness(wall: ModalWall, *, closed: bool = False) -> csr_array:
 
 
 def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Array], float]:
-    """A function that gives the largest part that one of a wall's lowest frequencies loses with other masses.
+    """A function that returns the largest relative drop of a wall's lowest frequencies when its masses change.
 
     Parameters
     ----------
     wall
         The wall.
     count
-        Number of frequencies.
+        Number of frequencies compared.
     highest
-        Its largest ω² [1/s²], roughly.
+        The wall's largest ω² [1/s²], roughly.
 
     Returns
     -------
@@ -62,13 +62,13 @@ def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Ar
         Takes modal masses ``(nd,)`` [kg].
     """
     moving = np.isfinite(wall.mass)
-    stiffness = csc_array(modal_stiffness(wall) + diags_array(GROUND * highest * wall.mass[moving]))
+    stiffness = csc_array(modal_stiffness(wall) + diags_array(GROUND_STIFFNESS * highest * wall.mass[moving]))
     bodies, body = connected_components(stiffness, directed=False)
     rows = [np.flatnonzero(body == k) for k in range(bodies)]
     lowest_of = [(own, lowest_frequencies(csc_array(stiffness[own][:, own]), count)) for own in rows]
 
     def lowest(mass: Array) -> Array:
-        """The smallest ω² [1/s²] of all bodies, ascending."""
+        """The `count` smallest ω² [1/s²] of all bodies, ascending."""
         return np.sort(np.concatenate([of_body(mass[moving][own]) for own, of_body in lowest_of]))[:count]
 
     exact = lowest(wall.mass)
@@ -76,16 +76,16 @@ def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Ar
 
 
 def lowest_frequencies(stiffness: csc_array, count: int) -> Callable[[Array], Array]:
-    """A function that gives a body's smallest ω² [1/s²] of its masses ``(n,)``.
+    """A function that returns a body's smallest ω² [1/s²] for its masses ``(n,)``.
 
-    The blocks of a body hold together: Lanczos' method finds one of several equal frequencies, which equal bodies have.
+    The body must be connected: equal bodies have equal frequencies, of which Lanczos' method finds only one.
     """
     n = stiffness.shape[0]
     if n <= DENSE:
-        # Of M against K: that of K against M finds the lowest to the rounding of the highest, far above them.
+        # Solve M x = K x / ω², because K x = ω² M x has errors relative to the highest ω², far above the lowest.
         K, slowest = stiffness.toarray(), (max(n - count, 0), n - 1)
         return lambda mass: 1 / eigh(np.diag(mass), K, eigvals_only=True, subset_by_index=slowest)
-    # A symmetric ordering fills the factors less than the one that is usual for any matrix.
+    # A symmetric ordering causes less fill-in than the default ordering for general matrices.
     factors = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     inverse = LinearOperator((n, n), factors.solve, dtype=np.float64)
     start = np.random.default_rng(0).standard_normal(n)

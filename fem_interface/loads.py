@@ -1,4 +1,4 @@
-"""Where the loads of a block's weight act on its mesh: everywhere, or lumped at its inner nodes as in the paper."""
+"""How loads proportional to mass act on a block's mesh: consistently, or lumped at its inner nodes as in the paper."""
 
 from typing import Literal, TypeAlias
 
@@ -9,20 +9,20 @@ from runningbond.scene import Array, Mask, SceneError
 from .cracks import Pieces, edges_of
 
 Loads: TypeAlias = Literal["consistent", "inner"]
-"""Loads proportional to mass: consistent with it, or lumped at nodes inside the blocks (the paper's Sec. 5)."""
+"""Loads proportional to mass: consistent with the mass, or lumped at nodes inside the blocks (the paper's Sec. 5)."""
 
 
 def inner_mass(wall: Pieces) -> Array:
-    """Mass of each movable block lumped at its inner nodes, ``(nn,)`` [kg]; nothing at all other nodes.
+    """Mass of each movable block lumped at its inner nodes, ``(nn,)`` [kg]; zero at all other nodes.
 
-    Each node bears in the manner of the triangles round it, m_i = A_i (α + β · (x_i − c)), with α and β such that
-    the block's mass and its centroid c are right. Between the pieces of a cracked block its nodes' masses are
-    shared as A_i is.
+    The mass of a node is m_i = A_i (α + β · (x_i − c)), with A_i a third of the area of the triangles around it, and α
+    and β such that the block's mass and its centroid c are right. If the block may crack, the pieces that meet at a
+    node share its mass in the same way.
 
     Raises
     ------
     SceneError
-        If the inner nodes of a block are too few.
+        If a block has too few inner nodes.
     """
     mesh = wall.mesh
     owner, count = wall.owner[mesh.block], int(wall.owner[-1]) + 1
@@ -55,7 +55,7 @@ def inner_mass(wall: Pieces) -> Array:
 
 
 def _on_outline(wall: Pieces) -> Mask:
-    """Whether each node lies on the outline of its block, ``(nn,)``: an edge that one triangle alone has does."""
+    """Whether each node lies on the outline of its block, ``(nn,)``: on an edge that belongs to one triangle only."""
     edges = np.sort(edges_of(wall.node[wall.mesh.triangles]), axis=1)
     edge, times = np.unique(edges, axis=0, return_counts=True)
     outer = np.zeros(int(wall.node.max()) + 1, dtype=bool)

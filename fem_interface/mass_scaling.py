@@ -1,13 +1,13 @@
-"""Mass scaling of deformable modes, and the frequency that bounds the scaled wall, from each block alone.
+"""Mass scaling of deformable modes, and a bound of the scaled wall's highest frequency from each block by itself.
 
-With K_b a block's own stiffness, K_j its share of the joints' and C the viscosity of its deformable modes, central
-differences are stable at a step Δt(ω) if for every block
+With K_b a block's own stiffness, K_j its share of the joints' stiffness and C the viscosity of its deformable modes,
+central differences are stable at a step Δt(ω) if for every block
 
     K_b + (2/Δt) C + K_j ≤ ω² M*,    M* = M + β K_b / ω²,
 
-with β a little above one: a mode that is stiff enough to limit the step is made just so heavy that it does not. The
-smallest such ω is sought; it comes close to that of rigid blocks, however stiff the blocks are. In walls of few blocks
-the lowest vibrations are not far below it and would become slower: masses are scaled for a larger ω there.
+with β a little above one: a mode stiff enough to limit the step is made just heavy enough not to. The smallest such ω
+is computed; it is close to that of rigid blocks, however stiff the blocks are. In walls of few blocks the lowest
+natural frequencies are not far below it and would drop noticeably; there masses are scaled for a larger ω.
 """
 
 from dataclasses import dataclass
@@ -23,50 +23,52 @@ from runningbond.scene import Array
 from .frequency_shift import frequency_shift
 from .modal_wall import RESOLUTION, ModalWall
 
-ROOM = 1.1
-"""Step that masses are scaled for, in critical ones: leaves room for the viscosity of the scaled modes."""
+STEP_MARGIN = 1.1
+"""Step that masses are scaled for, over the critical step 2/ω; above one because of the scaled modes' viscosity."""
 
-CLOSE = 1e-3
-"""Relative accuracy of ω²."""
+FREQUENCY_TOLERANCE = 1e-3
+"""Relative tolerance of ω² at which iterations end."""
 
 
 @dataclass(frozen=True)
 class Allowance:
     """How far masses may be scaled.
 
-    In walls of less than ten blocks it is at most the lowest two thirds of those frequencies that a wall has of rigid
-    blocks: in the highest of them one block swings against the others, and to keep these is almost to scale nothing.
+    In walls of less than ten blocks, at most two thirds of the frequencies that the wall has with rigid blocks are
+    preserved. In the highest of them single blocks vibrate against the others, and preserving these would allow almost
+    no scaling.
     """
 
-    lowest: int  # number of the lowest frequencies that scaling leaves as they are
-    lost: float  # part of them that it may take
-    # times a deformation's share of its joints' stiffness that its mass is scaled for, besides its own
+    lowest: int  # number of lowest frequencies that scaling preserves
+    lost: float  # largest relative drop of these frequencies
+    # masses are scaled for a deformation's own stiffness plus this factor times its share of the joints' stiffness
     of_joints: float
-    viscous: float  # the joints' viscous damping ratio that goes with it
+    viscous: float  # viscous damping ratio of the joints that the step is computed with
 
 
 IN_TIME = Allowance(lowest=20, lost=2e-3, of_joints=0.0, viscous=VISCOUS)
-"""Where it matters how a wall vibrates."""
+"""Scaling for motions in which a wall's vibrations matter."""
 
 AT_REST = Allowance(lowest=1, lost=1e-2, of_joints=4.0, viscous=CALMER)
-"""Where only what it bears at rest does, and how long it takes to come to rest."""
+"""Scaling if only the load that a wall carries at rest matters, and the time that it takes to come to rest."""
 
-LARGE = 1000
-"""Number of blocks, or of triangles that may part, beyond which they are not looked at, to save the memory.
+LARGE_WALL = 1000
+"""Number of movable blocks, or of triangles that may separate, above which the drop of frequencies is not checked, to
+save memory.
 
-The twentieth frequency of so large a wall is far below what limits the step; in a single course, whose waves travel
-one way only, it may lose more than is allowed all the same.
+The twentieth frequency of so large a wall is far below the one that limits the step. In a single course, where waves
+travel in one direction only, it may nevertheless drop by more than is allowed.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledModes:
-    """Modes made fit for a time step.
+    """Modes with scaled masses.
 
     Parameters
     ----------
     frequency_squared : float
-        ω² that bounds the wall [1/s²].
+        Upper bound of the wall's largest ω² [1/s²].
     mass, viscosity : (nd,) float
         Modal masses after scaling, and viscosity of the deformable modes [N s/m].
     """
@@ -78,19 +80,19 @@ class ScaledModes:
 
 @dataclass(frozen=True, eq=False)
 class _Kind:
-    """Blocks of one template, each with other joints: their modes and their share of the joints, ``(n, m, m)``."""
+    """Blocks of one template on different joints: their modes, and their shares of the joints, ``(n, m, m)``."""
 
     mass: Array
     stiffness: Array
     joints: Array
-    # what masses are scaled for, ``(m,)``: the modes' own stiffness and some times their share of the joints
+    # stiffness that masses are scaled for, ``(m,)``: the modes' own plus `of_joints` times their share of the joints'
     scaled_for: Array
 
 
 def scaled_modes(
     wall: ModalWall, damping: float, *, mass_scaling: bool = True, allowance: Allowance = IN_TIME
 ) -> ScaledModes:
-    """Scale the masses of a wall's modes as far as the joints' step asks for.
+    """Scale the masses of a wall's modes so that the joints limit the time step.
 
     Parameters
     ----------
@@ -101,33 +103,33 @@ def scaled_modes(
     mass_scaling
         Whether masses are scaled at all.
     allowance
-        How far they may be.
+        How far masses may be scaled.
     """
     kinds = _tightest(wall, allowance.of_joints)
-    stiffness = _of_coordinates(wall, kinds)
+    stiffness = _scaling_stiffness(wall, kinds)
     if mass_scaling:
-        square = _smallest(kinds, damping, allowance.viscous)
+        square = _smallest_bound(kinds, damping, allowance.viscous)
         fit = _square_to_scale_for(wall, stiffness, square, allowance)
         if fit > square:
-            square = _smallest(kinds, damping, allowance.viscous, fit)
+            square = _smallest_bound(kinds, damping, allowance.viscous, fit)
     else:
-        fit, square = np.inf, _smallest(kinds, damping, allowance.viscous, np.inf)
+        fit, square = np.inf, _smallest_bound(kinds, damping, allowance.viscous, np.inf)
     mass = _scaled(wall.mass, stiffness, fit)
     return ScaledModes(square, mass, modal_viscosity(wall.stiffness, mass, damping))
 
 
 def undeformed_frequency_squared(wall: ModalWall) -> float:
-    """ω² that bounds the wall if its blocks do not deform [1/s²]."""
+    """Upper bound of the wall's largest ω² [1/s²] if its blocks do not deform."""
     return _rigid_bound(_tightest(wall))
 
 
 def _tightest(wall: ModalWall, of_joints: float = 0.0) -> list[_Kind]:
-    """Blocks with the shares of their joints that bound rigid ones most closely."""
+    """Blocks on those shares of their joints (`EXPONENTS`) that yield the lowest bound for rigid blocks."""
     return min((_kinds(wall, exponent, of_joints) for exponent in EXPONENTS), key=_rigid_bound)
 
 
-def _of_coordinates(wall: ModalWall, kinds: list[_Kind]) -> Array:
-    """What masses are scaled for, ``(nd,)``: `wall.stiffness` where the joints' share does not count."""
+def _scaling_stiffness(wall: ModalWall, kinds: list[_Kind]) -> Array:
+    """Stiffness that masses are scaled for, ``(nd,)``: `wall.stiffness` if the share of the joints' does not count."""
     each, result = iter(kinds), []
     for template in wall.templates:
         stiffness, moving = template.modes.stiffness.copy(), np.isfinite(template.modes.mass)
@@ -137,48 +139,48 @@ def _of_coordinates(wall: ModalWall, kinds: list[_Kind]) -> Array:
     return np.concatenate([*result, [0.0]])
 
 
-def _smallest(kinds: list[_Kind], damping: float, viscous: float, fit: float | None = None) -> float:
-    """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself where there is none."""
+def _smallest_bound(kinds: list[_Kind], damping: float, viscous: float, fit: float | None = None) -> float:
+    """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself if `fit` is None."""
 
     def bound(square: float) -> float:
         return max(_bound(kind, square, damping, viscous, fit or square) for kind in kinds)
 
-    low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
+    low = high = _rigid_bound(kinds) or 1.0  # zero if pins leave no rigid motion and blocks can only deform
     while bound(high) > high:
         low, high = high, 2 * high
-    while high > low * (1 + CLOSE):
+    while high > low * (1 + FREQUENCY_TOLERANCE):
         middle = float(np.sqrt(low * high))
         low, high = (low, middle) if bound(middle) <= middle else (middle, high)
     return high
 
 
 def _square_to_scale_for(wall: ModalWall, stiffness: Array, square: float, allowance: Allowance) -> float:
-    """An ω² from `square` up for which masses may be scaled, so that the lowest frequencies stay as they are.
+    """The ω², `square` or larger, for which masses may be scaled so that the lowest frequencies are preserved.
 
-    It is the smallest, but where what is lost falls faster than 1 / ω², in walls of a few blocks.
+    It is the smallest such ω² unless the drop of frequencies falls faster than 1 / ω², as in walls of a few blocks.
     """
     rigid = int(((wall.stiffness == 0) & np.isfinite(wall.mass)).sum())
     lowest = min(allowance.lowest, 2 * rigid // 3)
-    if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
+    if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE_WALL:
         return square
     shift = frequency_shift(wall, lowest, square)
-    # Rounded, for a library's frequencies differ in their last bits from machine to machine.
+    # Rounded, because a library's frequencies differ in their last bits between machines.
     while (lost := round(shift(_scaled(wall.mass, stiffness, square)) / allowance.lost, 6)) > 1:
-        square *= lost * (1 + CLOSE)
+        square *= lost * (1 + FREQUENCY_TOLERANCE)
     return square
 
 
 def _scaled(mass: Array, stiffness: Array, square: float) -> Array:
-    return np.asarray(mass * mass_factor(stiffness, mass, ROOM * 2 / np.sqrt(square)))
+    return np.asarray(mass * mass_factor(stiffness, mass, STEP_MARGIN * 2 / np.sqrt(square)))
 
 
 def modal_viscosity(stiffness: Array, mass: Array, damping: float) -> Array:
-    """2 ξ (k m)^{1/2}, nothing for a mode without stiffness whatever its mass."""
+    """Viscosity 2 ξ (k m)^{1/2} of modes; zero for a mode without stiffness, whatever its mass."""
     return np.where(stiffness > 0, 2 * damping * np.sqrt(stiffness * np.where(stiffness > 0, mass, 1.0)), 0.0)
 
 
 def _rigid_bound(kinds: list[_Kind]) -> float:
-    """Largest ω² of blocks that do not deform."""
+    """Largest ω² [1/s²] of blocks that do not deform, each on its share of the joints."""
     result = 0.0
     for kind in kinds:
         rigid = np.flatnonzero(kind.stiffness == 0)
@@ -196,7 +198,7 @@ def _bound(kind: _Kind, square: float, damping: float, viscous: float, fit: floa
 
 
 def _kinds(wall: ModalWall, exponent: float, of_joints: float) -> list[_Kind]:
-    """Blocks that differ in their mesh, their pins or their joints, shared with an exponent (`joint_shares`)."""
+    """Blocks that differ in mesh, pins or joints; joints are shared with an exponent (`joint_shares`)."""
     joint = wall.elements
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
@@ -205,7 +207,7 @@ def _kinds(wall: ModalWall, exponent: float, of_joints: float) -> list[_Kind]:
     normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne], closed=True)
     springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
 
-    # Both sides of all elements, side by side: their local nodes, and all that their stiffness depends on.
+    # Sides a of all elements, then sides b: their local nodes, and all that their stiffness depends on.
     block, part = block.T.ravel(), part.T.ravel()
     nodes = np.concatenate([joint.nodes[:, :2], joint.nodes[:, 2:]]) - wall.mesh.first_node[block][:, None]
     shares = joint.weights.transpose(1, 0, 2).reshape(ne, 2 * n)

@@ -1,11 +1,12 @@
-"""Blocks that mirror themselves: their modes do too, so that few of them move the sum or the difference of two nodes.
+"""Folding of mode tables of blocks with mirror symmetry, in which most entries become zero.
 
-A rectangle's modes are even or odd about each of its axes. In sums and differences of the displacements of nodes that
-face each other across an axis, three quarters and more of a table Φ of nodal displacements by modes are nothing:
+A rectangle's modes are even or odd about each of its axes. If the displacements of two nodes that face each other
+across an axis are replaced by their sum and difference, three quarters or more of the entries of a table Φ of nodal
+displacements by modes vanish:
 
-    Φ = P_n … P_1 F,        P: (a, b) → (a + b, a − b),
+    Φ = P_n … P_1 F,        P: (a, b) → (a + b, a − b).
 
-which the kernels make use of where there are enough blocks to outweigh its longer way through small arrays.
+The kernels use this factorisation if there are enough blocks to outweigh its additional passes over small arrays.
 """
 
 from collections.abc import Sequence
@@ -16,29 +17,29 @@ import numpy as np
 
 from runningbond.scene import Array, Indices, Unsigned
 
-FEWEST = 64
-"""Blocks of one template below which a plain matrix product is as fast."""
+FEWEST_BLOCKS = 64
+"""Number of blocks of one template below which a plain matrix product is as fast."""
 
 ROUNDING = 1e-12
-"""Share of the largest entry of a mode below which another one is none."""
+"""Size of an entry, relative to the largest entry of its mode, up to which it is set to zero."""
 
 COINCIDENT = 1e-9
-"""Distance of a node from the mirror image of another, in sizes of the block, below which it is that image."""
+"""Distance of a node from the mirror image of another, relative to the block's size, up to which they coincide."""
 
 TERMS = 2
-"""Entries of a row that `block_kernels` takes at once; short rows are filled up with entries of nothing."""
+"""Number of a row's entries that `block_kernels` processes at once; rows are padded with zeros to a multiple of it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Folded:
-    """A table of nodal displacements by modes, ``(2 nn, m)``, as few entries and some sums and differences.
+    """A table of nodal displacements by modes, ``(2 nn, m)``, as a sparse table and sums and differences of its rows.
 
     Parameters
     ----------
     pairs : (n, 2) int
-        Rows that give way to their sum and their difference, one pair after the other.
+        Pairs of rows to replace by their sum and their difference, in this order, to unfold the table.
     table : (2 nn, m) float
-        What is left of the table, most of it zeros.
+        The folded table F, most of it zeros.
     """
 
     pairs: Indices
@@ -46,7 +47,7 @@ class Folded:
 
     @property
     def worth_it(self) -> bool:
-        """Whether at most half of the entries are left."""
+        """Whether at most half of the entries are nonzero."""
         return bool(2 * np.count_nonzero(self.table) <= self.table.size)
 
 
@@ -69,19 +70,19 @@ def folded(points: Array, table: Array) -> Folded:
             table[a], table[b] = (table[a] + table[b]) / 2, (table[a] - table[b]) / 2
             pairs.append(np.column_stack([a, b]))
     table[np.abs(table) <= ROUNDING * largest] = 0.0
-    # Unfolding undoes the last fold first.
+    # Unfolding starts with the last fold.
     return Folded(np.concatenate(pairs)[::-1], table)
 
 
 def facing(points: Array, axis: int) -> Indices:
-    """Nodes on the lower side of an axis of symmetry and those that face them, ``(2, n)``; none if there is no axis.
+    """Nodes on the lower side of an axis of symmetry and their mirror images, ``(2, n)``; empty without symmetry.
 
     Parameters
     ----------
     points : (nn, 2) float
         The nodes [m].
     axis
-        Coordinate that changes its sign from node to node: 0 across the upright axis, 1 across the level one.
+        Coordinate whose sign the reflection changes: 0 for the vertical axis of symmetry, 1 for the horizontal one.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     image = points.copy()
@@ -95,14 +96,14 @@ def facing(points: Array, axis: int) -> Indices:
 
 
 class TableRows(NamedTuple):
-    """Entries of tables, row by row, `TERMS` at once.
+    """Nonzero entries of tables, row by row, in terms of `TERMS` entries each.
 
     Parameters
     ----------
     start : (n_rows + 1,) uint64
         First term of each row, then the number of terms.
     column, value : (n_terms, TERMS)
-        Columns and values of each term.
+        Columns and values of each term's entries.
     """
 
     start: Unsigned
@@ -111,15 +112,15 @@ class TableRows(NamedTuple):
 
 
 class FoldedTables(NamedTuple):
-    """Folded tables of many templates, as the kernels take them.
+    """Folded tables of many templates, in the form that the kernels use.
 
     Parameters
     ----------
     shapes : (n_templates, 9) uint64
-        Number of blocks, modes and displacements a block; where the blocks' coordinates and displacements start; the
-        first rows of the table forward and backward, its first pair and the one after its last.
+        Number of blocks, modes and displacements per block; index of the blocks' first coordinate and displacement;
+        first row of the table in `forward` and in `backward`; its first pair, and the one after its last.
     pairs : (n_pairs, 2) uint64
-        Rows that give way to their sum and their difference, in the order in which that unfolds.
+        Pairs of rows to replace by their sum and their difference, in the order of unfolding.
     forward, backward
         Entries of the tables and of their negative transposes.
     """
@@ -131,15 +132,15 @@ class FoldedTables(NamedTuple):
 
 
 def fold_of_many(blocks: int, points: Array, table: Array) -> Folded | None:
-    """Fold the table of so many blocks, given as `folded` has it, if that is worth it."""
-    if blocks < FEWEST:
+    """Fold a template's table as in `folded`, or return None if its blocks are too few or too many entries remain."""
+    if blocks < FEWEST_BLOCKS:
         return None
     fold = folded(points, table)
     return fold if fold.worth_it else None
 
 
 def folded_tables(templates: Sequence[tuple[tuple[int, int, int, int, int], Folded]]) -> FoldedTables:
-    """Join folded tables, each with the first five entries of its row of `FoldedTables.shapes`."""
+    """Join folded tables, each given with the first five entries of its row of `FoldedTables.shapes`."""
     tables = [fold.table for _, fold in templates]
     counts = [(*fold.table.shape, len(fold.pairs)) for _, fold in templates]
     first = np.cumsum([(0, 0, 0), *counts], axis=0)

@@ -1,4 +1,4 @@
-"""A wall in modal coordinates: which coordinates a block has, and what loads and points are in them."""
+"""A wall in modal coordinates: the coordinates of its blocks, and loads and points' displacements in terms of them."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,24 +18,24 @@ from .operators import JointElements, PointsOn, joint_elements
 from .templates import Template, nodes_of, templates, triangles_of
 
 RESOLUTION = 1e-9
-"""Relative difference below which two elements are of one kind."""
+"""Rounding unit of an element's properties, relative to their size, when elements of one kind are detected."""
 
 
 @dataclass(frozen=True, eq=False)
 class ModalWall:
-    """Blocks with modes, joined at the points of joint elements.
+    """Blocks with modes, connected at the points of joint elements.
 
-    Modal coordinates stand template by template, in each mode by mode, for all its blocks side by side. Fixed blocks
-    share the last one, which never moves.
+    Modal coordinates are ordered by template, then by mode, then by block. Fixed blocks share the last coordinate,
+    which never moves.
 
     Parameters
     ----------
     pieces
-        The wall and its mesh. Where its blocks may crack, their triangles are what is called a block here.
+        The wall and its mesh. If its blocks may crack, "block" means one of their triangles here.
     templates
-        Its movable blocks.
+        The wall's movable blocks.
     elements
-        Its joint elements and their points.
+        The wall's joint elements and their points.
     """
 
     pieces: Pieces
@@ -49,18 +49,18 @@ class ModalWall:
 
     @property
     def mesh(self) -> WallMesh:
-        """Its mesh."""
+        """The wall's mesh."""
         return self.pieces.mesh
 
     @cached_property
     def first(self) -> Indices:
-        """First coordinate of each template, then the one that never moves, ``(n_templates + 1,)``."""
+        """First coordinate of each template, then the coordinate that never moves, ``(n_templates + 1,)``."""
         counts = [len(template.blocks) * len(template.modes.mass) for template in self.templates]
         return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
 
     @cached_property
     def place(self) -> Indices:
-        """Template of each block and its row there, ``(nb, 2)``; −1 for fixed blocks."""
+        """Template of each block and the block's index in it, ``(nb, 2)``; −1 for fixed blocks."""
         place = np.full((len(self.scene.blocks), 2), -1)
         for k, template in enumerate(self.templates):
             place[template.blocks, 0] = k
@@ -69,7 +69,7 @@ class ModalWall:
 
     @property
     def mass(self) -> Array:
-        """Modal masses, ``(nd,)``; inf where nothing moves."""
+        """Modal masses, ``(nd,)``; inf for coordinates that never move."""
         return np.concatenate([*(np.repeat(t.modes.mass, len(t.blocks)) for t in self.templates), [np.inf]])
 
     @property
@@ -79,13 +79,13 @@ class ModalWall:
 
     @cached_property
     def block(self) -> Indices:
-        """Block of each coordinate, ``(nd,)``; of the last, which never moves, the last block."""
+        """Block of each coordinate, ``(nd,)``; the last block for the last coordinate, which never moves."""
         each = [np.tile(template.blocks, len(template.modes.mass)) for template in self.templates]
         return np.concatenate([*each, [len(self.scene.blocks) - 1]])
 
     @cached_property
     def rigid(self) -> Indices:
-        """Where each block's rigid coordinates stand, ``(nb, 3)``; the last coordinate of all for fixed blocks."""
+        """Indices of each block's rigid coordinates, ``(nb, 3)``; the very last coordinate for fixed blocks."""
         result = np.full((len(self.scene.blocks), 3), self.first[-1])
         for template, first in zip(self.templates, self.first, strict=False):
             n = len(template.blocks)
@@ -105,7 +105,7 @@ class ModalWall:
         return self.mesh.first_node[template.blocks] + np.arange(len(template.modes.shape) // 2)[:, None]
 
     def strain(self, motion: Array) -> Array:
-        """Mean strains ε_x, ε_y and γ_xy of each triangle, ``(nt, 3)``; zero where nothing moves."""
+        """Mean strains ε_x, ε_y and γ_xy of each triangle, ``(nt, 3)``; zero in fixed blocks."""
         triangle_block = self.mesh.triangle_block
         order = np.argsort(triangle_block, kind="stable")
         first = np.searchsorted(triangle_block[order], np.arange(len(self.scene.blocks)))
@@ -121,22 +121,22 @@ class ModalWall:
         return [piece.reshape(-1, len(t.blocks)) for piece, t in zip(pieces, self.templates, strict=True)]
 
     def places(self, block: Indices, row: Indices, counts: list[int]) -> tuple[Indices, Indices]:
-        """Places for the displacements of points of blocks ``(n,)``, given their rows in tables of the templates.
+        """Indices for the displacements of points of blocks ``(n,)``, given their rows in tables of the templates.
 
         Parameters
         ----------
         block, row : (n,) int
-            Block of each point, and its row in the table of that block's template; -1 where it has none.
+            Block of each point, and the point's row in the table of that block's template; -1 if it has none.
         counts
             Number of rows of each template's table.
 
         Returns
         -------
         (n, 2) int
-            Place of each point's displacements along x and y, those of a template's blocks side by side; after the
-            last of all where there are none.
+            Index of each point's displacements along x and y, consecutive over the blocks of a template; one after
+            the last index for points without a row.
         (n_templates + 1,) int
-            First place of each template, then the number of places.
+            First index of each template, then the number of indices.
         """
         blocks = np.array([len(template.blocks) for template in self.templates], dtype=np.int64)
         first = np.concatenate([[0], np.cumsum(2 * blocks * counts, dtype=np.int64)])
@@ -148,14 +148,14 @@ class ModalWall:
 
     @cached_property
     def forces_by_piece(self) -> tuple[Forces, Forces]:
-        """Dead and live forces of the scene, of loads along lines on every triangle along them.
+        """Dead and live forces of the scene; loads along lines are distributed to all triangles along them.
 
-        At two points of a block they would bend that too little.
+        Forces at only two points of a block would bend it too little.
         """
         return self.scene.forces_by_piece(self.mesh.points[edges_of(self.mesh.triangles)])
 
     def load(self, forces: Forces, loads: Loads = "consistent") -> Array:
-        """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation alone."""
+        """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation only."""
         if loads == "consistent":
             each = [t.modes.inert @ forces.acceleration[t.blocks].T for t in self.templates]
         else:
@@ -174,12 +174,12 @@ class ModalWall:
     def displacement_row(self, block: int, at: Array, direction: Array) -> Array:
         """Displacement of a point ``(2,)`` of a movable block along a direction, per coordinate, ``(nd,)``.
 
-        The point is taken to lie in the triangle that it is deepest in, or least outside of.
+        It is interpolated in the triangle that the point is deepest inside of, or least outside of.
         """
         template, row = self.place[block]
         points, triangles = self.mesh.points[nodes_of(self.mesh, block)], triangles_of(self.mesh, block)
         (x1, y1), (x2, y2), (x3, y3) = (points[triangles] - at).transpose(1, 2, 0)
-        # Each corner's share is that of the triangle between the point and the other two.
+        # Barycentric coordinates: each corner's share is the area between the point and the other two corners.
         areas = np.column_stack([x2 * y3 - x3 * y2, x3 * y1 - x1 * y3, x1 * y2 - x2 * y1])
         shares = areas / areas.sum(axis=1, keepdims=True)
         best = int(np.argmax(shares.min(axis=1)))
@@ -189,7 +189,7 @@ class ModalWall:
         return result
 
     def deformation(self, block: int, at: Array) -> tuple[Indices, Array]:
-        """Coordinates ``(m,)`` of a block's deformations, and how far each moves a point of it, ``(m, 2)``."""
+        """Coordinates ``(m,)`` of a block's deformations, and a point's displacement per coordinate, ``(m, 2)``."""
         if self.place[block, 0] < 0:
             return rigid_body(block, at)
         rows = np.array([self.displacement_row(block, at, axis) for axis in np.eye(2)])
@@ -200,7 +200,7 @@ class ModalWall:
     def control_row(self) -> Array:
         """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`.
 
-        The mean of the blocks that have the point, and of each one's pieces there.
+        It is averaged over the blocks that have the point, and for each block over the pieces there.
         """
         held, at, direction = self.scene.control_point
         owner, times = self.pieces.owner[held], np.bincount(self.pieces.owner[held])
@@ -210,18 +210,18 @@ class ModalWall:
 
 
 def element_runs(wall: ModalWall) -> tuple[Indices, Indices]:
-    """Runs of alike joint elements, along which a kernel walks through memory straight ahead.
+    """Runs of equal joint elements, along which kernels access memory contiguously.
 
-    A wall of equal blocks has few kinds of joint elements. Elements of one kind are put in the order of their blocks,
-    so that where element e lies between the blocks in rows p and q of their templates, element e + 1 as a rule lies
-    between p + 1 and q + 1.
+    A wall of equal blocks has few kinds of joint elements. Elements of one kind are sorted by their blocks: if element
+    e lies between the blocks with indices p and q in their templates, element e + 1 usually lies between p + 1 and
+    q + 1.
 
     Returns
     -------
     (ne,) int
         Joint elements, run by run.
     (nr + 1,) int
-        First element of each run in that order, then their number.
+        First element of each run in that order, then the number of elements.
     """
     joint = wall.elements
     n, ne, _ = joint.weights.shape
@@ -250,7 +250,7 @@ def modal_wall(
     points: PointsOn = "elements",
     cracks: Cracks = "joints",
 ) -> ModalWall:
-    """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_interface.model.fem`."""
+    """Mesh a scene, compute its blocks' modes and sort its joint elements into runs; see `fem_interface.model.fem`."""
     parts = pieces(scene, wall_mesh(scene, cells), cracks)
     rule = rule or wall_rule(parts.scene, cells if points == "elements" else 1)
     joints = joint_elements(parts.mesh, parts.scene, rule, points)

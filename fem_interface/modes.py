@@ -1,7 +1,7 @@
-"""Modes of one block: rigid motions first, then deformations, in which its mass and stiffness are diagonal.
+"""Modes of one block: rigid motions first, then deformations; mass and stiffness are diagonal in them.
 
-The rigid modes are the translations and the rotation about the centroid by one, so that their coordinates are those
-of a rigid block and their masses its mass and its moment of inertia, exactly, with the consistent mass. Deformable
+The rigid modes are unit translations and a unit rotation about the centroid. Their coordinates are those of a rigid
+block, and with the consistent mass their modal masses are exactly the block's mass and moment of inertia. Deformable
 modes are normalised to the block's mass: their coordinate is the block's root mean square displacement [m].
 """
 
@@ -16,31 +16,32 @@ from .eigenvectors import eigenvectors, symmetric_eigenvectors
 from .mirror_symmetry import facing
 
 ModeCount: TypeAlias = int | Literal["all"]
-"""How many modes a block has: 3 are rigid; 6 strain uniformly too; up to 20 bend, in the softest of the displacements
-up to third degree; "all" are those of its constant-strain triangles.
+"""Number of modes of a block: 3 are the rigid ones; 6 add uniform strains; up to 20 add bending, in the softest
+polynomial displacements up to third degree; "all" are those of its constant-strain triangles.
 
-With 6 a block moves as in discontinuous deformation analysis (`shi1988`), with 20 as in that of third order
+With 6 modes a block moves as in discontinuous deformation analysis (`shi1988`), with 20 as in its third-order version
 (`koo1996`).
 """
 
 MOST_MODES, BENDING = 20, 10
-"""Displacements up to third degree, and how many of them bend a brick well enough: its deflection as a cantilever comes
-out 5.5 % too small for 240 × 60 mm and 14.5 % for 240 × 120 mm."""
+"""Number of polynomial displacements up to third degree, and the number of modes that bend a brick well enough: its
+deflection as a cantilever is 5.5 % too small for 240 × 60 mm and 14.5 % for 240 × 120 mm."""
 
-ALIKE = 1e-6
-"""Relative difference of two ω² below which they are one: a square block bends one way as easily as the other."""
+TIE_TOLERANCE = 1e-6
+"""Relative tolerance within which modes have the same ω² as the last mode of a given number, and are taken in too: a
+square block bends one way as easily as the other."""
 
-EQUAL = 1e-9
-"""Relative difference of two ω² below which a mixture of their modes is one to rounding, which is less than `ALIKE`."""
+DEGENERATE = 1e-9
+"""Relative difference of two ω², smaller than `TIE_TOLERANCE`, up to which mixtures of their modes count as modes."""
 
 
 def degree_of(count: ModeCount, key: str = "modes") -> int:
-    """Degree of the displacements of so many modes.
+    """Polynomial degree of the displacements of a number of modes.
 
     Raises
     ------
     SceneError
-        Under a key, if there is no such number of modes.
+        Naming the key, if the number of modes is not possible.
     """
     if count == "all":
         return 1
@@ -51,19 +52,19 @@ def degree_of(count: ModeCount, key: str = "modes") -> int:
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes of a block: three that are rigid, then deformations.
+    """Modes of a block: three rigid modes, then deformations.
 
     Parameters
     ----------
     rigid : (2 nn, 3) float
         Nodal displacements of the translations along x and y and of the rotation about the centroid.
     free : (3, 3) float
-        Rigid motion per coordinate that leaves the block's pins alone; columns that are not needed are zero.
-        The identity without pins.
+        Rigid motion, per coordinate, that satisfies the block's pins; unused columns are zero. The identity without
+        pins.
     shape : (2 nn, m) float
         Nodal displacements per coordinate: ``rigid @ free``, then the deformations.
     mass, stiffness : (m,) float
-        Modal masses, inf where a coordinate is not needed, and stiffness, zero for rigid modes.
+        Modal masses, inf for unused coordinates, and stiffness, zero for rigid modes.
     inert : (m, 2) float
         Modal force per acceleration of the whole block along x and y [kg].
     """
@@ -82,7 +83,7 @@ def rigid_motions(points: Array, M: Array) -> Array:
     R = np.zeros((n, 2, 3))
     R[:, 0, 0] = R[:, 1, 1] = 1
     translations = R.reshape(-1, 3)[:, :2]
-    # The origin need not be near: the centroid is taken from it first.
+    # Relative to the first node, because the origin may be far away.
     x, y = (points - points[0]).T
     momenta = _momenta(translations, M)
     centre = np.einsum("kn,n->k", momenta, np.column_stack([x, y]).ravel()) / momenta[0, ::2].sum()
@@ -96,13 +97,13 @@ def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount
     Parameters
     ----------
     points : (nn, 2) float
-        Nodes [m], of triangles whose displacements have the degree of the modes (`degree_of`).
+        Nodes [m] of triangles whose displacements have the polynomial degree of the modes (`degree_of`).
     K, M : (2 nn, 2 nn) float
         Stiffness [N/m] and consistent mass [kg].
     held : (np, 2 nn) float
-        Displacements that are zero, one a row: every mode satisfies them.
+        Constraints, one per row: ``held @ displacement`` is zero for every mode.
     count
-        How many modes an unsupported block has; more where others are as soft as the last of them.
+        Number of modes of an unsupported block; further modes as soft as the last one are included too.
     """
     R = rigid_motions(points, M)
     inertia = np.einsum("kn,nk->k", _momenta(R, M), R)
@@ -118,16 +119,16 @@ def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount
         stiffness = np.concatenate([stiffness, inertia[0] * own])
     inert = np.einsum("nm,ni->mi", shape, _momenta(R[:, :2], M).T)
     if len(held) == 0:
-        inert[:] = 0.0  # but for rounding
+        inert[:] = 0.0  # removes rounding errors
         inert[0, 0] = inert[1, 1] = inertia[0]
     return Modes(R, free, shape, mass, stiffness, inert)
 
 
 def polynomials(points: Array, degree: int) -> Array:
     """Polynomial displacements up to a degree, at points ``(nn, 2)``, ``(2 nn, (degree + 1)(degree + 2))``."""
-    # The origin need not be near nor the block of size one.
+    # Centred and scaled, because the origin may be far away and the block's size far from one.
     x, y = ((points - points.mean(axis=0)) / np.ptp(points, axis=0).max()).T
-    # Products of more digits: powers of a library differ in their last bits from machine to machine.
+    # Products in extended precision, because a library's powers differ in their last bits between machines.
     of_x, of_y = (np.vander(each.astype(np.longdouble), degree + 1, increasing=True).T.astype(float) for each in (x, y))
     monomials = [of_x[i] * of_y[j] for i in range(degree + 1) for j in range(degree + 1 - i)]
     result = np.zeros((len(points), 2, len(monomials), 2))
@@ -136,28 +137,28 @@ def polynomials(points: Array, degree: int) -> Array:
 
 
 def _softest(points: Array, K: Array, M: Array, count: int) -> Array:
-    """Displacements of first degree and the softest others up to the third, ``(2 nn, count)``."""
+    """Displacements of first degree and the softest others up to third degree, ``(2 nn, n)`` with n ≥ `count`."""
     first = polynomials(points, 1)
     if count == 6:
         return first
     own, further = eigenvectors(K, M, polynomials(points, 3), _momenta(first, M))
-    return np.hstack([first, further[:, own <= own[count - 7] * (1 + ALIKE)]])
+    return np.hstack([first, further[:, own <= own[count - 7] * (1 + TIE_TOLERANCE)]])
 
 
 def _momenta(motions: Array, M: Array) -> Array:
-    """Momenta of some motions ``(n, k)``, a row each: zero on what is orthogonal to them."""
+    """Momenta M x of motions ``(n, k)``, one per row; their products with motions orthogonal to x are zero."""
     return np.asarray(np.einsum("nm,mk->kn", M, motions))
 
 
 def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Array) -> tuple[Array, Array]:
-    """Deformations in the span of some displacements that are orthogonal to the rigid ones and leave pins alone.
+    """Deformations in the span of `candidates` that are orthogonal to the rigid motions and satisfy the pins.
 
     Returns
     -------
     (2 nn, d) float
-        Their shapes, of unit mass and diagonal stiffness.
+        Shapes of the deformations, of unit modal mass, with diagonal stiffness.
     (d,) float
-        ω² of each [1/s²].
+        ω² of each deformation [1/s²].
     """
     inert = _momenta(rigid, M)
     zero = np.vstack([held, inert / np.sqrt((inert**2).sum(axis=1))[:, None]]) if len(inert) else held
@@ -166,16 +167,16 @@ def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Arr
 
 
 def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
-    """Shapes of which those of one ω² are even or odd about a block's upright axis: any mixture would do as well.
+    """Shapes that are even or odd about a block's vertical axis, chosen among the mixtures of modes with equal ω².
 
     Parameters
     ----------
     points : (nn, 2) float
         The nodes [m].
     shapes : (2 nn, d) float
-        Shapes that are orthogonal with the mass `M`; left as they are if the block has no such axis.
+        Shapes that are orthogonal with respect to the mass `M`; returned unchanged if the block has no such axis.
     own : (d,) float
-        ω² of each [1/s²], in ascending order.
+        ω² of each shape [1/s²], in ascending order.
     """
     low, high = facing(points, 0)
     if low.size == 0:
@@ -184,7 +185,7 @@ def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
     mirrored[np.append(low, high)] = mirrored[np.append(high, low)]
     mirrored[:, 0] *= -1
     image, result = mirrored.reshape(shapes.shape), shapes.copy()
-    for alike in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > EQUAL * own[1:]) + 1):
+    for alike in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > DEGENERATE * own[1:]) + 1):
         seen = np.einsum("ni,jn->ij", shapes[:, alike], _momenta(image[:, alike], M))
         _, turn = symmetric_eigenvectors((seen + seen.T) / 2)
         result[:, alike] = np.einsum("ni,ij->nj", shapes[:, alike], turn)

@@ -1,6 +1,7 @@
-"""Outlines of deformable blocks: their sides as polygons of the nodes of their mesh, and points along those.
+"""Outlines of deformable blocks: their sides as polygons of mesh nodes, and points along the sides.
 
-Contacts are at the points: the nodes or, where pressures along joints matter, at others between them as well.
+Contacts are at these points, which are the nodes and, if the pressure distribution along joints matters, others
+between the nodes.
 """
 
 import math
@@ -25,28 +26,28 @@ from .templates import nodes_of
 
 @dataclass(frozen=True, eq=False)
 class NodeOutline:
-    """Blocks with modes whose sides are polygons of the nodes of their mesh.
+    """Blocks with modes whose sides are polygons of mesh nodes.
 
-    Outline nodes are numbered side by side, the sides as the corners that they start from; each starts a facet.
+    Outline nodes are numbered side after side, sides as the corners that they start from; each node starts a facet.
 
     Parameters
     ----------
     wall
         The blocks in modal coordinates.
     outline
-        Their undeformed outlines.
+        The blocks' undeformed outlines.
     node : (no,) int
-        Node of the mesh that each is.
+        Mesh node of each outline node.
     row : (no,) int
-        Its row in the table of its block's template.
+        Row of each outline node in the table of its block's template; −1 in fixed blocks.
     first : (nv + 1,) int
-        First outline node of each side, then their number.
+        First outline node of each side, then the number of outline nodes.
     nodes, points, sides
-        The outline nodes, the points along the sides and these, as the kernels take them.
+        The outline nodes, the points along the sides, and the sides, in the form that the kernels use.
     parts : int
-        Points on each facet.
+        Number of points on each facet.
     tables : list of (n, 2, m) float
-        Of each template the displacements of its outline nodes per deformation.
+        For each template, the displacements of its outline nodes per deformation mode.
     """
 
     wall: ModalWall
@@ -70,23 +71,23 @@ class NodeOutline:
         return np.ascontiguousarray(motion[self.wall.rigid]).ravel()
 
     def positions(self, motion: Array) -> Array:
-        """Where the nodes of the mesh are after a motion ``(nd,)``, ``(nn, 2)`` [m]."""
+        """Positions of the mesh nodes after a motion ``(nd,)``, ``(nn, 2)`` [m]."""
         mesh, deformed = self.wall.mesh, motion.copy()
         deformed[self.wall.rigid] = 0.0
         arm = mesh.points - self.scene.blocks.centroid[mesh.block] + self.wall.displacement(deformed)
         return self.placed(mesh.block, arm, motion)
 
     def placed(self, block: Indices, arm: Array, motion: Array) -> Array:
-        """Where points of blocks ``(n,)`` are after a motion ``(nd,)``, ``(n, 2)`` [m].
+        """Positions of points of blocks ``(n,)`` after a motion ``(nd,)``, ``(n, 2)`` [m].
 
-        Their arms ``(n, 2)`` [m] are from the blocks' centroids, and in the blocks' frames.
+        The arms ``(n, 2)`` [m] of the points start at the blocks' centroids and are in the blocks' frames.
         """
         cosine, sine, x, y = self.outline.placed(self.rigid(motion)).blocks[:, block]
         px, py = arm.T
         return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
 
     def new_tables(self) -> NodalTables:
-        """Displacements of the outline nodes per deformation, with buffers of their own."""
+        """Displacements of the outline nodes per deformation mode, with new buffers."""
         wall, rows = self.wall, []
         _, first = _places(wall, self.nodes.owner, self.row, self.tables)
         for template, coordinate, at, table in zip(wall.templates, wall.first, first, self.tables, strict=False):
@@ -98,12 +99,12 @@ class NodeOutline:
 
 
 def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> NodeOutline:
-    """Mesh a scene whose blocks are to move far.
+    """Mesh a scene for finite displacements.
 
     Raises
     ------
     SceneError
-        As of `check_finite`, `ContactMaterials` and `Outline.of`.
+        As in `check_finite`, `ContactMaterials` and `Outline.of`.
     """
     check_finite(scene)
     ContactMaterials(scene)
@@ -138,14 +139,14 @@ def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, place: Indice
 
 
 def _points(length: Array, parts: int) -> SidePoints:
-    """Points along the sides, some on each facet of some length ``(no,)`` [m]."""
+    """Points along the sides: `parts` of them on each facet, whose lengths are ``(no,)`` [m]."""
     apart = np.repeat(length, parts) / parts
     half = np.minimum(apart, np.roll(apart, 1)) / 2
     return SidePoints(np.repeat(np.arange(len(length)), parts), np.tile(np.arange(parts) / parts, len(length)), half)
 
 
 def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
-    """The sides, from the first outline node of each and the lengths of the facets."""
+    """The sides, from the first outline node of each side and the lengths of the facets [m]."""
     inset = np.where(outline.radius > 0, outline.radius * np.tan(outline.exterior / 2), 0.0)
     at_end = outline.ends >= len(outline.length)
     inset[outline.ends[at_end]] = -outline.run_on[at_end]
@@ -172,14 +173,14 @@ def _tables(wall: ModalWall, node: Indices) -> tuple[Indices, list[Array]]:
 
 
 def _places(wall: ModalWall, owner: Indices, row: Indices, tables: list[Array]) -> tuple[Indices, Indices]:
-    """As `ModalWall.places`, of outline nodes; none of blocks that do not deform."""
+    """Indices of outline nodes' displacements as in `ModalWall.places`; blocks that do not deform have none."""
     counts = [len(table) if table.size else 0 for table in tables]
-    deforms = np.append(np.array(counts) > 0, False)[wall.place[owner, 0]]  # -1, of fixed blocks, is the last
+    deforms = np.append(np.array(counts) > 0, False)[wall.place[owner, 0]]  # -1, for fixed blocks, is the last entry
     return wall.places(owner, np.where(deforms, row, -1), counts)
 
 
 def _nodes_of_sides(wall: ModalWall) -> Iterator[Indices]:
-    """Nodes of each side from its first corner up to the last but one."""
+    """Nodes of each side, from its first corner to the node before its last corner."""
     blocks, mesh = wall.scene.blocks, wall.mesh
     seen: dict[tuple[int, bytes], list[Indices]] = {}
     for block in range(len(blocks)):
@@ -196,7 +197,7 @@ def _nodes_of_sides(wall: ModalWall) -> Iterator[Indices]:
 
 
 def _nodes_between(points: Array, start: Array, stop: Array, tolerance: float) -> Indices:
-    """Points on a straight line, in its sense, but for its end."""
+    """Points on a straight line, ordered from its start to its stop, without the stop."""
     run = stop - start
     length = np.hypot(*run)
     along, off = (points - start) @ run / length, (points - start) @ [run[1], -run[0]] / length

@@ -1,6 +1,6 @@
-"""Operators of blocks in constant-strain triangles, assembled by scikit-fem: stiffness, mass, traces and jumps.
+"""Operators of blocks of constant-strain triangles, assembled by scikit-fem: stiffness, mass, traces and jumps.
 
-Degrees of freedom are node by node, x before y: 2i and 2i + 1 are the displacement of node i [m].
+Degrees of freedom are ordered by node, x before y: 2i and 2i + 1 are the displacement of node i [m].
 """
 
 from dataclasses import dataclass
@@ -30,11 +30,11 @@ from runningbond.limit.kinematics import Jump
 from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 
 PointsOn: TypeAlias = Literal["elements", "joints"]
-"""What a quadrature rule is laid on: every joint element, or every joint whole, however many elements it has."""
+"""What a quadrature rule is applied to: every joint element, or every whole joint, however many elements it has."""
 
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3}
-"""Triangles by the degree of their displacement; the first are those of constant strain."""
+"""Triangle elements by the polynomial degree of their displacement; those of degree 1 have constant strain."""
 
 
 def stiffness_matrix(
@@ -42,7 +42,7 @@ def stiffness_matrix(
 ) -> csr_array:
     """Plane-stress stiffness of vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [N/m].
 
-    With constant strain the nodes are the vertices; see `nodes_of_degree`.
+    For constant strain the nodes are the vertices; for higher degrees see `nodes_of_degree`.
     """
     return thickness * elasticity(displacements(points, triangles, degree), np.array([young]), np.array([poisson]))
 
@@ -53,22 +53,25 @@ def mass_matrix(points: Array, triangles: Indices, density: float, thickness: fl
 
 
 def nodes_of_degree(points: Array, triangles: Indices, degree: int) -> Array:
-    """Nodes of triangles whose displacement has some degree, ``(nn, 2)`` [m]; the vertices stand first."""
+    """Nodes of triangles with displacements of a polynomial degree, ``(nn, 2)`` [m]; the vertices come first."""
     return np.ascontiguousarray(displacements(points, triangles, degree).doflocs[:, ::2].T)
 
 
 def displacements(points: Array, triangles: Indices, degree: int) -> Basis:
-    """Displacements of vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``, of some degree."""
+    """Displacement basis of a polynomial degree on vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``."""
     return Basis(_mesh(points, triangles), ElementVector(ELEMENTS[degree]()))
 
 
 def elasticity(basis: Basis, young: Array, poisson: Array) -> csr_array:
-    """Plane-stress stiffness of unit thickness, of moduli and ratios of all triangles or of each ``(nt,)`` [Pa]."""
+    """Plane-stress stiffness for unit thickness [Pa], with moduli [Pa] and Poisson's ratios of each triangle ``(nt,)``.
+
+    Arrays of one entry hold for all triangles.
+    """
     return csr_array(asm(linear_elasticity(*plane_stress(young[:, None], poisson[:, None])), basis))
 
 
 def inertia(basis: Basis) -> csr_array:
-    """Consistent mass of unit density and thickness [m²]."""
+    """Consistent mass for unit density and thickness [m²]."""
     return csr_array(asm(BilinearForm(lambda u, v, _: dot(u, v)), basis))
 
 
@@ -87,7 +90,7 @@ def mean_strains(basis: Basis) -> csr_array:
 
 
 def lumped_mass(points: Array, triangles: Indices, density: float, thickness: float) -> Array:
-    """Row sums of the consistent mass, ``(2 nn,)`` [kg]: exact in translation, too much in rotation."""
+    """Row sums of the consistent mass, ``(2 nn,)`` [kg]: exact in translation, too large in rotation."""
     return np.asarray(mass_matrix(points, triangles, density, thickness).sum(axis=1))
 
 
@@ -97,21 +100,21 @@ def _mesh(points: Array, triangles: Indices) -> MeshTri:
 
 @dataclass(frozen=True, eq=False)
 class JointElements:
-    """Points on the joint elements of a mesh, and how the displacements of the elements' nodes reach them.
+    """Points on the joint elements of a mesh, and the interpolation of the elements' nodal displacements to them.
 
-    The points are numbered like `points`: the first points of all elements, then all second ones, and so on. Where
-    a rule is laid on whole joints, an element comes once for each point in it, and has one point each time.
+    The points are in the order of `points`: the first point of all elements, then the second of all, and so on. If a
+    rule is applied to whole joints, an element is listed once for each point in it, each time with that one point.
 
     Parameters
     ----------
     element : (ne,) int
-        Joint elements of the mesh, in the order in which they come here.
+        Joint elements of the mesh, in the order used here.
     nodes : (ne, 4) int
         Nodes a0, a1, b0, b1 of each element: side a along the tangent, and the nodes of b that face them.
     normal : (ne, 2) float
         Unit normal of each element, from a to b.
     weights : (n, ne, 2) float
-        Share of the displacement of the elements' two ends in that of each of their n points.
+        Interpolation weights of the elements' two ends in the displacement of each of their n points.
     points
         The joint points.
     """
@@ -124,13 +127,13 @@ class JointElements:
 
     @property
     def listing(self) -> Indices:
-        """Order that lists the points joint by joint, element by element and along the tangent, ``(np,)``."""
+        """Order that sorts the points by joint, by element and along the tangent, ``(np,)``."""
         along = (self.points.position * self.points.tangent).sum(axis=1)
         return np.lexsort((along, np.tile(self.element, len(self.weights))))
 
     def sides(self, displacement: Array) -> Array:
         """Displacements of the points on sides a and b, ``(2, np, 2)`` [m], from those of the nodes ``(nn, 2)``."""
-        ends = displacement[self.nodes].reshape(-1, 2, 2, 2)  # element by element, of both sides, at both ends
+        ends = displacement[self.nodes].reshape(-1, 2, 2, 2)  # element, side, end, axis
         return np.asarray(np.einsum("pek,eskd->sped", self.weights, ends).reshape(2, -1, 2))
 
     def arranged(self, order: Indices) -> "JointElements":
@@ -143,7 +146,7 @@ class JointElements:
 def joint_elements(
     mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: PointsOn = "elements"
 ) -> JointElements:
-    """Lay a quadrature rule on the joints, moved in from their ends by their inset.
+    """Apply a quadrature rule to the joints, whose ends are moved in by their inset.
 
     Parameters
     ----------
@@ -152,15 +155,15 @@ def joint_elements(
     scene
         The scene.
     rule
-        Quadrature rule; that of `wall_rule` where none is given.
+        Quadrature rule; by default that of `wall_rule`.
     points
-        What the rule is laid on: each joint element, or each joint whole, whose points are then those of rigid
-        blocks.
+        What the rule is applied to: each joint element, or each whole joint, which then has the same points as
+        between rigid blocks.
 
     Raises
     ------
     SceneError
-        If the inset leaves nothing of a joint's last element.
+        If the inset leaves nothing of a joint's first or last element.
     """
     if points not in ("elements", "joints"):
         raise ValueError(f'points = {points!r}: must be "elements" or "joints"')
@@ -193,21 +196,21 @@ def joint_elements(
 
 
 def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:
-    """Lay a rule on every joint element.
+    """Apply a rule to every joint element.
 
     Parameters
     ----------
     inset : (nj,) float
-        Distance by which the rule keeps from the ends of each joint [m].
+        Distance between the rule's outermost points and the ends of each joint [m].
 
     Returns
     -------
     (ne,) int
         The elements.
     (ne, n) float
-        Points of each, from 0 at its first end to 1 at its last.
+        Points of each element, from 0 at its first end to 1 at its last.
     (ne, n) float
-        Part of the element's length that each stands for.
+        Length that each point represents, relative to the element's length.
     """
     joint = mesh.joint
     length = np.hypot(*(mesh.points[mesh.interfaces[:, 1]] - mesh.points[mesh.interfaces[:, 0]]).T)
@@ -222,17 +225,17 @@ def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tupl
             name, f"must leave something of a joint element {length[worst]:.4g} m long", float(inset[joint[worst]])
         )
     local = low[:, None] + (high - low)[:, None] * (rule.nodes + 1) / 2
-    # What lies in the inset is shared by all of the joint, as by that of a rigid block.
+    # The length within the inset is distributed over the whole joint, as for rigid blocks.
     whole, left = (np.bincount(joint, length * part) for part in (np.ones(len(joint)), high - low))
     share = (high - low) * (whole / np.where(left > 0, left, 1.0))[joint]
     return np.arange(len(joint)), local, share[:, None] * rule.weights / 2
 
 
 def _on_joints(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:
-    """Lay a rule on every joint whole; see `_on_elements`, of whose elements only those with a point are named."""
+    """Apply a rule to every whole joint; returns as `_on_elements`, with one row for each point and its element."""
     elements = np.bincount(mesh.joint, minlength=len(scene.joints))
     along = 0.5 + (0.5 - inset / scene.joints.length)[:, None] * rule.nodes
-    # The elements of a joint are equally long. A point where two meet is taken to the first of them.
+    # The elements of a joint are equally long. A point where two of them meet is assigned to the first.
     scaled = along * elements[:, None]
     place = np.clip(np.ceil(scaled - 1e-9).astype(np.int64) - 1, 0, elements[:, None] - 1)
     element = (np.cumsum(elements) - elements)[:, None] + place
@@ -253,15 +256,15 @@ def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tu
     Returns
     -------
     (nf, n, 2) float
-        Share of the first and of the last node in the displacement at each point.
+        Interpolation weights of the first and the last node in the displacement at each point.
     (nf, n, 2) float
-        Where the points are [m].
+        Positions of the points [m].
     """
     if len(first) == 0:
         return np.zeros((*local.shape, 2)), np.zeros((*local.shape, 2))
     low, high = np.minimum(first, last), np.maximum(first, last)
     facets = edges_between(wall.facets.T.astype(np.int64), low, high)
-    # scikit-fem runs along a facet from its lower node to its higher one.
+    # scikit-fem parametrises a facet from its lower-numbered node to its higher-numbered one.
     running = np.where((first < last)[:, None], local, 1 - local)
     quadrature = (running[None], np.ones(local.shape[1]))
     basis = FacetBasis(wall, ElementTriP1(), facets=facets, quadrature=quadrature)
@@ -274,7 +277,7 @@ def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tu
 
 
 def find_edges(edges: Indices, start: Indices, stop: Indices) -> tuple[Indices, Mask]:
-    """Numbers of the edges ``(n, 2)`` from some nodes to others, and whether there are such edges at all."""
+    """Numbers of the edges among ``(n, 2)`` from given nodes to others, and whether such edges exist."""
     count = edges.max() + 1
     keys, wanted = edges @ [count, 1], start * count + stop
     order = np.argsort(keys)
@@ -283,7 +286,7 @@ def find_edges(edges: Indices, start: Indices, stop: Indices) -> tuple[Indices, 
 
 
 def edges_between(edges: Indices, start: Indices, stop: Indices) -> Indices:
-    """Numbers of the edges ``(n, 2)`` from each end of joint elements to the other."""
+    """Numbers of the edges among ``(n, 2)`` from one end of joint elements to the other."""
     number, there = find_edges(edges, start, stop)
     if not there.all():
         raise ValueError("a joint element does not lie on sides of triangles")
@@ -291,7 +294,7 @@ def edges_between(edges: Indices, start: Indices, stop: Indices) -> Indices:
 
 
 def nodal_jump(elements: JointElements, nodes: int) -> Jump:
-    """Jumps at the points of joint elements per nodal displacement [m], of a mesh with so many nodes."""
+    """Jumps at the points of joint elements per nodal displacement, for a mesh with a number of nodes."""
     n, ne, _ = elements.weights.shape
     rows = np.arange(n * ne)
     tangent = np.column_stack([-elements.normal[:, 1], elements.normal[:, 0]])

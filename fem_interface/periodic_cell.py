@@ -1,7 +1,7 @@
-"""Moduli of a periodic cell of running bond: two blocks, rigid or deformable, and the joints that are theirs.
+"""Elastic moduli of a periodic cell of running bond: two blocks, rigid or deformable, and the joints they own.
 
-A block moves like its image in the cell, plus the macroscopic strain times the distance between the two. What the
-cell stores of that strain, once its own coordinates have found their equilibrium, are the moduli.
+A block moves like its image in the cell, plus the macroscopic strain times the distance between the two. The moduli
+follow from the energy that the cell stores under that strain when its own coordinates are in equilibrium.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ RULE = lobatto(3)  # exact for the squared jumps of rigid blocks
 
 
 class _Modes(NamedTuple):
-    """Freedoms of a block per mode ``(f, m)`` and per translation ``(f, 2)``, and stiffness of its modes ``(m,)``."""
+    """A block's degrees of freedom per mode ``(f, m)`` and per translation ``(f, 2)``, and modal stiffness ``(m,)``."""
 
     shape: Array
     translation: Array
@@ -29,18 +29,18 @@ class _Modes(NamedTuple):
 
 
 def rigid_cell(scene: Scene) -> tuple[Array, int]:
-    """Moduli per strain E11, E22 and E12, ``(3, 3)`` [Pa], of rigid blocks, and the number of coordinates."""
+    """Moduli of rigid blocks for strains E11, E22 and E12, ``(3, 3)`` [Pa], and the number of coordinates."""
     points = wall_points(scene, RULE)
     block = _Modes(np.eye(3), np.eye(3)[:, :2], np.zeros(3))
     return _moduli(scene, points, jump_operator(points, scene.blocks.centroid), [block] * len(scene.blocks))
 
 
 def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> tuple[Array, int]:
-    """The same of blocks in triangles, in as many modes as `fem` takes."""
+    """Moduli of blocks of triangles with as many modes as in `fem`, and the number of coordinates; see `rigid_cell`."""
     wall = modal_wall(scene, cells, modes, RULE)
     blocks = []
     for template, nodes in zip(wall.place[:, 0], np.diff(wall.mesh.first_node), strict=True):
-        shape, stiffness = np.zeros((2 * nodes, 0)), np.zeros(0)  # of the ground, which no block of the cell touches
+        shape, stiffness = np.zeros((2 * nodes, 0)), np.zeros(0)  # for the ground, which no block of the cell touches
         if template >= 0:
             shape, stiffness = wall.templates[template].modes.shape, wall.templates[template].modes.stiffness
         blocks.append(_Modes(shape, np.tile(np.eye(2), (nodes, 1)), stiffness))
@@ -48,7 +48,7 @@ def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None
 
 
 def _images(scene: Scene) -> tuple[Indices, Indices]:
-    """Two whole blocks in the middle of a wall, and which of them each block is an image of, −1 for none."""
+    """Two whole blocks in the middle of a wall, and which of the two each block is an image of, −1 for none."""
     if scene.bond is None:
         raise ValueError("a cell is cut out of running bond")
     width, height = scene.bond.width, scene.bond.height
@@ -64,11 +64,11 @@ def _images(scene: Scene) -> tuple[Indices, Indices]:
 
 
 def _moduli(scene: Scene, points: JointPoints, jump: Jump, blocks: Sequence[_Modes]) -> tuple[Array, int]:
-    """Stiffness against macroscopic strain once the cell's coordinates are at rest, and their number n."""
+    """Stiffness for macroscopic strain with the cell's coordinates condensed out, and the number of coordinates n."""
     inside, images = _images(scene)
     row = np.cumsum([0, *(len(block.shape) for block in blocks)])
     column = np.cumsum([0, *(blocks[block].shape.shape[1] for block in inside)])
-    spread = np.zeros((row[-1], column[-1] + 3))  # freedoms of all blocks per coordinate and strain
+    spread = np.zeros((row[-1], column[-1] + 3))  # degrees of freedom of all blocks per coordinate and strain
     for block, image in enumerate(images):
         if image >= 0:
             own = slice(row[block], row[block + 1])
@@ -80,7 +80,7 @@ def _moduli(scene: Scene, points: JointPoints, jump: Jump, blocks: Sequence[_Mod
     opening, slip = (jump.opening @ spread)[belongs], (jump.slip @ spread)[belongs]
     energy, n = opening.T @ (normal * opening) + slip.T @ (shear * slip), int(column[-1])
     energy[:n, :n] += np.diag(np.concatenate([blocks[block].stiffness for block in inside]))
-    # Scaled, for the stiffnesses of modes lie far apart; the cell's translation alone is stopped by nothing.
+    # Scaled, because modal stiffnesses differ widely; pseudo-inverse, because the cell is free to translate.
     scale = 1 / np.sqrt(np.diag(energy)[:n])
     inner, coupling = energy[:n, :n] * scale[:, None] * scale, energy[:n, n:] * scale[:, None]
     condensed = energy[n:, n:] - coupling.T @ np.linalg.pinv(inner, 1e-12, hermitian=True) @ coupling

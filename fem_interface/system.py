@@ -1,4 +1,4 @@
-"""A scene as a block system of deformable blocks."""
+"""The block system of a wall with deformable blocks."""
 
 from collections.abc import Iterator
 
@@ -23,7 +23,7 @@ DAMPING = 0.05
 """Viscous damping ratio of the deformable modes."""
 
 ROUNDING = 1e-14
-"""Share of a node in a point below which it is none, and no time is spent on it."""
+"""Coefficient of a node's displacement in a point's jump below which it is set to zero, to save its computation."""
 
 
 def system_of(
@@ -43,7 +43,7 @@ def system_of(
     damping
         Viscous damping ratio of the deformable modes.
     loads, mass_scaling, energies
-        As `fem_interface.model.fem` has them.
+        As in `fem_interface.model.fem`.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def system_of(
 def block_system(
     wall: ModalWall, scaled: ScaledModes, interface: Interface, loads: Loads = "consistent"
 ) -> BlockSystem:
-    """The blocks of a wall with scaled modes, under its loads, on an interface."""
+    """The system of a wall's blocks with scaled modes, its loads and an interface."""
     scene, pieces = wall.scene, wall.pieces
     dead, live = (wall.load(forces, loads) for forces in wall.forces_by_piece)
     dead[np.isinf(wall.mass)] = live[np.isinf(wall.mass)] = 0.0
@@ -133,7 +133,7 @@ def _geometry(wall: ModalWall) -> ModalJoints:
 
 
 def _tables(wall: ModalWall) -> Iterator[tuple[Indices, Array]]:
-    """Of each template the nodes that lie on joints, and their displacements per rigid motion and deformation."""
+    """For each template, its nodes on joints and their displacements per rigid motion and deformation mode."""
     mesh, on_joint = wall.mesh, np.unique(wall.elements.nodes)
     of_node = wall.place[mesh.block[on_joint], 0]
     for k, template in enumerate(wall.templates):

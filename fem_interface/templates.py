@@ -1,4 +1,4 @@
-"""Templates: what congruent blocks, held alike, have in common: one mesh, one set of modes."""
+"""Templates: the mesh and the modes that congruent blocks with equal supports have in common."""
 
 from dataclasses import dataclass, replace
 
@@ -10,22 +10,22 @@ from runningbond.scene import Array, Indices, Mask, Scene, SceneError, table_of
 from .block_operators import BlockOperators, block_operators
 from .modes import ModeCount, Modes, block_modes, degree_of
 
-LARGE = 200_000
-"""Multiplications of one matrix product; larger ones are cut up, or the library would start threads."""
+PRODUCT_SIZE = 200_000
+"""Largest number of multiplications in one matrix product; larger products are split, or the library starts threads."""
 
 
 @dataclass(frozen=True, eq=False)
 class Template:
-    """Congruent blocks.
+    """Congruent blocks with the same modes.
 
     Parameters
     ----------
     blocks : (n,) int
         The blocks, column by column.
     modes
-        Modes that all of them have.
+        The modes of each block.
     strain : (3 nt, m) float
-        Mean strains ε_x, ε_y and γ_xy of each of their triangles per coordinate [1/m].
+        Mean strains ε_x, ε_y and γ_xy of each triangle of a block per coordinate [1/m].
     """
 
     blocks: Indices
@@ -34,21 +34,21 @@ class Template:
 
 
 def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
-    """Templates of the blocks that move, a beam and supports in rigid modes alone.
+    """Templates of the blocks that move; a beam and moving supports have rigid modes only.
 
-    Where there are very many blocks of one kind, several templates have the same modes.
+    If there are very many blocks of one kind, several templates share the same modes.
 
     Raises
     ------
     SceneError
-        If blocks are to deform and the scene does not say how stiff they are.
+        If blocks are to deform and the scene does not give their Young's modulus.
     """
     alike: dict[tuple[int, int, bytes, int], list[int]] = {}
     order = scene.column_by_column
     carried: Mask = np.asarray(scene.support_motion.any(axis=1))
     stiff = carried | scene.is_beam
     for block in order[~scene.fixed[order] | carried[order]].tolist():
-        # Congruent blocks of one material that are held alike; each stiff one by itself.
+        # Congruent blocks of one material with equal supports; each stiff block by itself.
         held = held_displacements(mesh, scene, block).tobytes()
         key = int(mesh.shape[block]), int(scene.material_of_block[block]), held, block if stiff[block] else -1
         alike.setdefault(key, []).append(block)
@@ -58,7 +58,7 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
     for blocks, (modes, strain) in zip(kinds, _modes(mesh, scene, [one[0] for one in kinds], counts), strict=True):
         if carried[blocks[0]]:
             modes = replace(modes, mass=np.full(3, np.inf), inert=np.zeros((3, 2)))
-        most = max(4, LARGE // modes.shape.size)
+        most = max(4, PRODUCT_SIZE // modes.shape.size)
         result += [Template(np.array(blocks[i : i + most]), modes, strain) for i in range(0, len(blocks), most)]
     return result
 
@@ -69,12 +69,12 @@ def nodes_of(mesh: WallMesh, block: int) -> slice:
 
 
 def triangles_of(mesh: WallMesh, block: int) -> Indices:
-    """Triangles of a block, in numbers of its own nodes, ``(nt, 3)``."""
+    """Triangles of a block in the numbering of its own nodes, ``(nt, 3)``."""
     return np.asarray(mesh.triangles[mesh.triangle_block == block] - mesh.first_node[block])
 
 
 def rows_of(shape: Array, nodes: Indices) -> Array:
-    """Rows of nodal displacements ``(2 nn, m)`` that some nodes have."""
+    """Rows of nodal displacements ``(2 nn, m)`` that belong to given nodes ``(n,)``, ``(2 n, m)``."""
     return np.asarray(shape[(2 * nodes[:, None] + [0, 1]).ravel()])
 
 
@@ -84,7 +84,7 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
     Raises
     ------
     SceneError
-        Where a pin is not at a node.
+        If a pin is not at a node.
     """
     points = mesh.points[nodes_of(mesh, block)]
     own = np.flatnonzero(scene.pins.block == block)
@@ -92,7 +92,7 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
     for row, pin in zip(rows, own, strict=True):
         distance = np.hypot(*(points - scene.pins.point[pin]).T)
         if scene.pins.turn[pin]:
-            # The rotation of a stiff body, from two nodes of it.
+            # The rotation of a rigid body, from two of its nodes.
             other = int(np.argmax(np.hypot(*(points - points[0]).T)))
             x, y = points[other] - points[0]
             row[other] = np.array([-y, x]) / (x**2 + y**2)
@@ -106,7 +106,7 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
 
 
 def _modes(mesh: WallMesh, scene: Scene, blocks: list[int], counts: list[ModeCount]) -> list[tuple[Modes, Array]]:
-    """Modes of some blocks, and their strains."""
+    """Modes of given blocks, and the strains of these modes."""
     young, poisson = _moduli(scene, blocks, counts)
     degrees = np.array([degree_of(count) for count in counts])
     found: dict[int, tuple[Modes, Array]] = {}
@@ -119,7 +119,7 @@ def _modes(mesh: WallMesh, scene: Scene, blocks: list[int], counts: list[ModeCou
 
 
 def _moduli(scene: Scene, blocks: list[int], counts: list[ModeCount]) -> Array:
-    """Young's modulus, zero of what does not deform, and Poisson's ratio ``(2, n)``."""
+    """Young's modulus [Pa], zero for blocks that do not deform, and Poisson's ratio, ``(2, n)``."""
     moduli = np.zeros((2, len(blocks)))
     for k, (block, count) in enumerate(zip(blocks, counts, strict=True)):
         material = scene.block_materials[scene.material_of_block[block]]
@@ -133,7 +133,7 @@ def _moduli(scene: Scene, blocks: list[int], counts: list[ModeCount]) -> Array:
 def _modes_of(
     mesh: WallMesh, scene: Scene, block: int, operators: BlockOperators, count: ModeCount
 ) -> tuple[Modes, Array]:
-    """Modes of a block, found on triangles of their own degree and taken at the nodes of the mesh; their strains."""
+    """Modes of a block, computed on triangles of their own degree and evaluated at the mesh nodes; their strains."""
     points, K, M, strain = operators
     density, nodes = float(scene.inertial_density[block]), nodes_of(mesh, block)
     held = held_displacements(mesh, scene, block)

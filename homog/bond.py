@@ -1,30 +1,33 @@
-"""Whether a wall's blocks are laid in running bond, read from its joints."""
+"""Check whether a wall's blocks are laid in running bond, from its joints."""
 
 import numpy as np
 
 from runningbond.scene import Bond, Mask, Scene
 
-ON_PLACE = 1e-3
-"""Distance from a place of the bond, in half blocks, within which a head joint stands there."""
+PLACE_TOLERANCE = 1e-3
+"""Distance from a position of the bond, in half blocks, within which a head joint counts as being there."""
 
 
 def between_blocks(scene: Scene) -> Mask:
-    """Which joints lie between two blocks of the wall: none on its ground, under its beam or in a block, ``(nj,)``."""
+    """Mask ``(nj,)`` of joints between two blocks of the wall: none on its ground, under its beam or inside a block."""
     return np.asarray(scene.masonry[scene.joints.block].all(axis=1) & ~scene.joints.inner)
 
 
 def head_places(scene: Scene, bond: Bond, heads: Mask, among: Mask) -> set[tuple[int, int]] | None:
-    """Half blocks from the left and courses from the bottom of some blocks to head joints; None off the bond."""
+    """Positions of head joints, in half blocks from the left and courses from the bottom of some blocks.
+
+    None if a head joint is off the half-block grid.
+    """
     low, _ = scene.blocks.extent(among)
     middle = (scene.joints.ends[heads].mean(axis=1) - low) / np.array([bond.width / 2, bond.height])
     column, course = np.rint(middle[:, 0]).astype(int), np.floor(middle[:, 1]).astype(int)
-    if not np.allclose(column, middle[:, 0], rtol=0, atol=ON_PLACE):
+    if not np.allclose(column, middle[:, 0], rtol=0, atol=PLACE_TOLERANCE):
         return None
     return set(zip(column.tolist(), course.tolist(), strict=True))
 
 
 def is_running_bond(scene: Scene, bond: Bond) -> bool:
-    """Whether blocks overlap by half of one everywhere: heads half a block off, no bed longer than that.
+    """Whether blocks overlap by half a block everywhere: heads shifted by half a block, no bed longer than that.
 
     Ends may be toothed and openings cut out.
     """
@@ -33,4 +36,4 @@ def is_running_bond(scene: Scene, bond: Bond) -> bool:
     overlaps = scene.joints.length[between & beds] / (bond.width / 2)
     if not places or not len(overlaps):
         return False
-    return len({sum(place) % 2 for place in places}) == 1 and bool(overlaps.max() < 1 + ON_PLACE)
+    return len({sum(place) % 2 for place in places}) == 1 and bool(overlaps.max() < 1 + PLACE_TOLERANCE)

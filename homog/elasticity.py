@@ -15,7 +15,7 @@ from .bond import between_blocks, is_running_bond
 class Moduli:
     """In-plane moduli per unit thickness [Pa]: σ11 = a1111 E11, σ22 = a2222 E22, σ12 = 2 a1212 E12.
 
-    There is no coupling between the two normal strains (a1122 = 0), because the blocks are rigid.
+    The two normal strains are not coupled (a1122 = 0), because the blocks are rigid.
     """
 
     a1111: float
@@ -34,12 +34,12 @@ def elastic_moduli(
 ) -> Moduli:
     """Moduli of the infinite wall from blocks b × a [m] and stiffnesses per unit area [Pa/m] of bed and head joints.
 
-    Stiffnesses may be zero, as those of open head joints.
+    Stiffnesses may be zero, e.g. for open head joints.
 
     Raises
     ------
     SceneError
-        For numbers that are no sizes or no stiffnesses.
+        For numbers that are not valid sizes or stiffnesses.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def elastic_moduli(
     bed_normal, bed_shear = AT_LEAST_ZERO.take("bed_normal", bed_normal), AT_LEAST_ZERO.take("bed_shear", bed_shear)
     head_normal = AT_LEAST_ZERO.take("head_normal", head_normal)
     head_shear = AT_LEAST_ZERO.take("head_shear", head_shear)
-    # Shear strain tilts the bond against the heads' shear and the beds' normal stiffness, in series with bed shear.
+    # Shear strain tilts the bond against head shear and bed normal stiffness, in series with sliding on beds.
     tilting = b * head_shear + bed_normal * b**2 / (4 * a)
     sliding = a * bed_shear
     in_series = tilting * sliding / (tilting + sliding) if sliding else 0.0
@@ -60,13 +60,13 @@ def elastic_moduli(
 def rigid_moduli(scene: Scene) -> Moduli:
     """Closed-form moduli [Pa] of a wall's running bond of rigid blocks.
 
-    Joints with what the wall stands on have no part in them. Openings, toothed ends and an inset change nothing.
+    Joints with the ground or supports are excluded. Openings, toothed ends and an inset have no influence.
 
     Raises
     ------
     SceneError
-        For walls that are no running bond, whose blocks differ in thickness, whose beds or heads are of several
-        materials or have no stiffness, and whose blocks may crack.
+        For walls that are not in running bond, whose blocks differ in thickness, whose beds or heads have several
+        materials or no stiffness, or whose blocks may crack.
     """
     check_scene(scene)
     bond = scene.bond
@@ -85,7 +85,7 @@ def rigid_moduli(scene: Scene) -> Moduli:
 
 
 def _stiffness(scene: Scene, chosen: Mask, what: str) -> Stiffness:
-    """Stiffness of the joints chosen, which are to be of one material."""
+    """Stiffness of the chosen joints, which must share one material."""
     kinds = [scene.joint_materials[k] for k in np.unique(scene.material_of_joint[chosen])]
     if len(kinds) != 1:
         names = ", ".join(each.name for each in kinds)

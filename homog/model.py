@@ -1,12 +1,13 @@
-"""Model ``homog``: collapse multiplier of a dry running-bond panel pushed sideways by its own weight, as a continuum.
+"""Model ``homog``: collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
 
-One crack rises from the lower corner on the far side of the push and the wedge above it turns about that
-corner. Blocks hold together up to a crack slope tan ψ = s, ψ from the horizontal, with
+The lateral load is proportional to the weight. One crack rises from the lower corner on the far side of the load, and
+the wedge above it rotates about that corner. Blocks hold together up to a crack slope tan ψ = s, ψ from the horizontal,
+with
 
     s = (m / tan φ)^{1/2},    m = 2 a / b,    r = H / L
 
 (Baraldi, Reccia & Cecchi, Eq. 6, with the exponent corrected: the printed −1/2 in the second branch makes the
-multiplier jump at r = s; see docs/errata.md), or less where tan φ is above 1 (`crack_slope`).
+multiplier jump at r = s; see docs/errata.md), or less if tan φ is above 1 (`crack_slope`).
 """
 
 import math
@@ -21,34 +22,33 @@ from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO
 from .bond import head_places
 
 FINENESS = (1, 4, 8, 16)
-"""The fewer of courses and of blocks in one, from which on deviations are told together."""
+"""Smaller of the number of courses and of blocks per course from which each pair of `OFF` applies."""
 
 OFF = {
     False: ((-0.646, 0.0), (-0.646, 0.0), (-0.566, 0.0), (-0.420, 0.060)),
     True: ((-0.823, -0.060), (-0.726, 0.044), (-0.383, 0.244), (-0.068, 0.314)),
 }
-"""Least and largest deviation from the limit load of blocks, a pair for each `FINENESS`: of blocks that are no taller
-than wide, and of taller ones. Measured on 932 panels of up to 1500 blocks, tan φ 0.3 to 1
-(benchmarks/studies/homogenised.py).
-"""
+"""Smallest and largest relative deviation from the limit load of the block model, a pair for each `FINENESS`: for
+blocks no taller than wide (False), and for taller ones (True). Measured on 932 panels of up to 1500 blocks, tan φ 0.3
+to 1 (benchmarks/studies/homogenised.py)."""
 
 
-NEGLIGIBLE = 1e-8
-"""Share of the weight by which loads may differ from it."""
+LOAD_TOLERANCE = 1e-8
+"""Tolerated deviation of loads from the weight, as a share of it."""
 
 
 def crack_slope(block_width: float, block_height: float, friction: float) -> float:
     """Steepest crack slope s of blocks b × a [m] with friction tan φ; inf without friction.
 
-    A crack opens across itself, of which blocks know as long as head joints that slide open by tan φ times that or
-    more, and bed joints too (`StrengthDomain`). Bed joints allow s = (m / tan φ)^{1/2}, and so do head joints where
-    2 μ² (μ m)^{1/2} ≤ 1 + μ m, of any blocks up to μ = 1. Beyond, both give way at the root of
+    A crack opens perpendicular to itself. Blocks can follow as long as both head and bed joints open by at least tan φ
+    times their slip (`StrengthDomain`). Bed joints allow s = (m / tan φ)^{1/2}, and so do head joints if
+    2 μ² (μ m)^{1/2} ≤ 1 + μ m, which holds for all blocks up to μ = 1. Beyond, both reach their limit at the root of
     (1/μ + m − μ) s² − 2 μ m s + m = 0.
 
     Raises
     ------
     SceneError
-        For numbers that are no sizes or no friction.
+        For numbers that are not valid sizes or not a valid friction.
     """
     b, a = ABOVE_ZERO.take("block_width", block_width), ABOVE_ZERO.take("block_height", block_height)
     m, mu = 2 * a / b, AT_LEAST_ZERO.take("friction", friction)
@@ -62,12 +62,12 @@ def crack_slope(block_width: float, block_height: float, friction: float) -> flo
 def lateral_multiplier(slenderness: float, slope: float, friction: float) -> float:
     """Collapse multiplier λ of a panel of slenderness r = H / L with crack slope s.
 
-    It is 1 / (2 s) where r ≤ s, (3 r − 2 s) / (3 r² − s²) beyond, and never more than tan φ, at which all of it slides.
+    λ = 1 / (2 s) if r ≤ s, else (3 r − 2 s) / (3 r² − s²), and at most tan φ, at which the whole panel slides.
 
     Raises
     ------
     SceneError
-        For numbers that are no slenderness, no slope (inf is one) or no friction.
+        For numbers that are not a valid slenderness, slope (inf is valid) or friction.
 
     Examples
     --------
@@ -85,9 +85,10 @@ def lateral_multiplier(slenderness: float, slope: float, friction: float) -> flo
 def homog(scene: Scene) -> Outcome:
     """Collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
 
-    The scene is a full rectangular panel on a frictional base or a fixed first course, whose height then counts from
-    there; any other is refused by a `SceneError`. The outcome has no bracket: a mechanism of the continuum proves the
-    multiplier an upper bound for the continuum, but for the wall of blocks it is an estimate, on either side.
+    The scene is a full rectangular panel on a frictional base or a fixed first course, from whose top its height is
+    then measured; any other scene raises a `SceneError`. The outcome has no bracket: a mechanism of the continuum
+    proves that the multiplier is an upper bound for the continuum, but for the wall of blocks it is an estimate that
+    may be too high or too low.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -111,28 +112,28 @@ def homog(scene: Scene) -> Outcome:
 
 
 def deviation(bond: Bond, length: float, height: float) -> tuple[float, float]:
-    """Least and largest relative deviation of λ from the limit load of blocks, on panels measured that are like one.
+    """Smallest and largest relative deviation of λ from the limit load of the block model, measured on similar panels.
 
     Examples
     --------
     >>> deviation(Bond(0.24, 0.06), length=1.44, height=0.72)
     (-0.646, 0.0)
     """
-    # Panels are whole in half blocks; seven and a half count as seven, whatever the last bit of a length.
+    # The length is a whole number of half blocks, despite rounding; 7.5 blocks count as 7.
     across = min(round(2 * length / bond.width) / 2, round(height / bond.height))
     return OFF[bond.height > bond.width * (1 + 1e-9)][max(0, int(np.searchsorted(FINENESS, across, side="right")) - 1)]
 
 
 def _bond(scene: Scene) -> Bond:
-    """Bond of a scene that keeps every assumption of the closed form; the others are refused."""
-    reason = "it needs a block width and height for all courses" if scene.bond is None else _why_not(scene, scene.bond)
+    """Bond of a scene that meets every assumption of the closed form; other scenes are refused."""
+    reason = "it needs a block width and height for all courses" if scene.bond is None else _refusal(scene, scene.bond)
     if scene.bond is None or reason:
         raise SceneError("model homog", f"has no closed form for this scene: {reason}")
     return scene.bond
 
 
-def _why_not(scene: Scene, bond: Bond) -> str:
-    """The first assumption of the closed form that a scene breaks, or nothing."""
+def _refusal(scene: Scene, bond: Bond) -> str:
+    """Message on the first assumption of the closed form that a scene violates; empty if there is none."""
     if scene.extras:
         return f"it needs a wall without {', '.join(scene.extras)}"
     if not _is_lateral(scene):
@@ -159,19 +160,19 @@ def _why_not(scene: Scene, bond: Bond) -> str:
 
 
 def _is_lateral(scene: Scene) -> bool:
-    """Whether each block is pulled down by its weight, and pushed sideways by as much."""
+    """Whether the dead load is each block's weight and the live load the same force sideways."""
     live, dead, weight = scene.live_forces, scene.dead_forces, float(np.hypot(*scene.load.gravity))
     aside = float(np.copysign(weight, live.acceleration[0, 0]))
     return (
         live.on_mass_alone
         and dead.on_mass_alone
-        and np.allclose(dead.acceleration, [0.0, -weight], rtol=0, atol=NEGLIGIBLE * weight)
-        and np.allclose(live.acceleration, [aside, 0.0], rtol=0, atol=NEGLIGIBLE * weight)
+        and np.allclose(dead.acceleration, [0.0, -weight], rtol=0, atol=LOAD_TOLERANCE * weight)
+        and np.allclose(live.acceleration, [aside, 0.0], rtol=0, atol=LOAD_TOLERANCE * weight)
     )
 
 
 def _is_full_bond(scene: Scene, bond: Bond) -> bool:
-    """Whether a panel has all head joints of running bond: at every second half block, shifted course by course."""
+    """Whether a panel has all head joints of running bond: at every second half block, alternating by course."""
     movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
     heads = head_places(scene, bond, movable[scene.joints.block].all(axis=1) & ~scene.joints.is_bed, movable)

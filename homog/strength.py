@@ -1,10 +1,10 @@
 """Strength domain of running bond with rigid blocks and Mohr–Coulomb joints (de Buhan & de Felice 1997).
 
-With macroscopic strain rate D and a rotation ω common to all blocks, the jump across a joint between blocks
-whose centres are Δx apart is (D − Ω) Δx, the same all along it: Δx = (b, 0) across head joints and (±b/2, a)
-across bed joints. So tractions may be constant along each joint, too: stresses Σ are carried if some within the
-joints' strength have the power Σ : D on the jumps of every D and ω. Joints bear σ ≤ f_t and
-|τ| ≤ s + (f_t − σ) tan φ, and those with a compressive strength p² + C_ss τ² ≤ f_m² as well, p = max(0, −σ).
+With macroscopic strain rate D and a rotation ω common to all blocks, the jump across a joint between blocks whose
+centres are Δx apart is (D − Ω) Δx, constant along the joint: Δx = (b, 0) across head joints and (±b/2, a) across bed
+joints. Tractions may therefore be constant along each joint, too. Stresses Σ are carried if some tractions within the
+strength of the joints have the power Σ : D on the jumps of every D and ω. Joints carry σ ≤ f_t and
+|τ| ≤ s + (f_t − σ) tan φ, and those with a compressive strength also p² + C_ss τ² ≤ f_m², p = max(0, −σ).
 """
 
 from dataclasses import dataclass
@@ -16,19 +16,19 @@ from runningbond.joints.mohr_coulomb import truncated_cone
 from runningbond.scene import Array, Bond, JointMaterial, SceneError
 from runningbond.scene.ranges import SMALLEST, Range
 
-OVER = 1e-10
-"""Share of a cap by which tractions may lie beyond it; where it is more, a tangent is laid there."""
+CAP_TOLERANCE = 1e-10
+"""Relative amount by which tractions may exceed a cap; if they exceed it by more, a tangent is added there."""
 
 ROUNDS = 100
-"""Most times that tangents are laid; each leaves a quarter of what lies beyond, or less."""
+"""Largest number of rounds of tangents; each round reduces the excess over the caps to a quarter or less."""
 
-SIDES = np.array([[1.0, 0.0], [0.6, 0.8], [0.6, -0.8], [0.0, 1.0], [0.0, -1.0]])
-"""Where tangents to a cap are laid first, as units of (p, √C_ss τ)."""
+FIRST_TANGENTS = np.array([[1.0, 0.0], [0.6, 0.8], [0.6, -0.8], [0.0, 1.0], [0.0, -1.0]])
+"""Points of the first tangents to a cap, as unit vectors of (p, √C_ss τ)."""
 
 
 @dataclass(frozen=True)
 class StrengthDomain:
-    """Stresses that running bond can carry, by its block and the strength of its joints."""
+    """Domain of the stresses that running bond can carry, from its block size and the strength of its joints."""
 
     bond: Bond
     joint: JointMaterial
@@ -78,7 +78,7 @@ class StrengthDomain:
         return max(0.0, largest) * unit / size
 
     def _powers(self) -> Array:
-        """Power of σ, then τ, of 1 on each joint, by D11, D22, D12 and ω, for the wall's area; ``(4, 6)``."""
+        """Power of unit σ, then unit τ, on each joint under D11, D22, D12 and ω, per area of the wall; ``(4, 6)``."""
         half, height = 0.5, self.bond.height / self.bond.width
         opening = np.array([[1, 0, 0, 0], [0, height, half, -half], [0, height, -half, half]])
         slip = np.array([[0, 0, 1, -1], [half, 0, height, height], [-half, 0, height, height]])
@@ -86,9 +86,9 @@ class StrengthDomain:
         return np.hstack([opening.T * share, slip.T * share])
 
     def _capped(self, balance: Array, rows: Array, right: Array, crushing: float) -> float:
-        """The largest t below caps on pressures, by tangents that are laid where it lies beyond them."""
+        """Largest t within caps on pressures, by cutting planes: tangents are added where tractions exceed the caps."""
         stretch = np.sqrt(self.joint.cap_shear)
-        joint, side = np.repeat(np.arange(3), len(SIDES)), np.tile(SIDES, (3, 1))
+        joint, side = np.repeat(np.arange(3), len(FIRST_TANGENTS)), np.tile(FIRST_TANGENTS, (3, 1))
         for _ in range(ROUNDS):
             tangents = np.zeros((len(joint), 7))
             tangents[np.arange(len(joint)), 1 + joint] = -side[:, 0]
@@ -97,16 +97,16 @@ class StrengthDomain:
             largest, (sigma, tau) = _largest(balance, rows, right)
             used = np.column_stack([np.maximum(0.0, -sigma), stretch * tau])
             reach = np.hypot(*used.T)
-            joint = np.flatnonzero(reach > crushing * (1 + OVER))
+            joint = np.flatnonzero(reach > crushing * (1 + CAP_TOLERANCE))
             side = used[joint] / reach[joint, None]
             if not len(joint):
                 break
-        # Shrunk to lie below the caps, tractions carry so much less at most.
+        # Scaled down until they satisfy the caps, the tractions carry t reduced by this factor.
         return largest * crushing / max(float(reach.max()), crushing)
 
 
 def _largest(balance: Array, rows: Array, right: Array) -> tuple[float, Array]:
-    """The largest t, or inf, and tractions σ and τ of the joints ``(2, 3)`` that carry it."""
+    """Largest t, or inf, and tractions σ and τ ``(2, 3)`` of the joints that carry it."""
     free = [(0, None)] + [(None, None)] * 6
     found = linprog(
         [-1, *[0] * 6],
@@ -126,10 +126,10 @@ def _largest(balance: Array, rows: Array, right: Array) -> tuple[float, Array]:
 
 
 def _stress(direction: object) -> Array:
-    """A direction in the space of stresses as ``(3,)``."""
+    """A direction in stress space as an array ``(3,)``."""
     if not isinstance(direction, (tuple, list, np.ndarray)) or np.shape(direction) != (3,):
         raise SceneError("direction", "must be three numbers, Σ11, Σ22 and Σ12", direction)
-    # What is lost beside the others may be too small for a number of a scene.
+    # Values negligible beside the others may be smaller than the smallest number allowed in a scene.
     small = [isinstance(value, float) and abs(value) < SMALLEST for value in direction]
     if all(small):
         small = [False] * 3

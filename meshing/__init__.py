@@ -1,4 +1,4 @@
-"""Finite-element meshes of walls: blocks in triangles, joints as zero-thickness elements between split nodes."""
+"""Finite-element meshes of walls: triangulated blocks, and joints as zero-thickness elements between split nodes."""
 
 from .files import check_suffix, write_mesh
 from .mesh import GROUPS, WallMesh, joint_group, wall_mesh

@@ -1,4 +1,4 @@
-"""A mesh as a file that other programs read: MSH 4.1 written by gmsh, or VTU written by meshio."""
+"""Mesh files that other programs read: MSH 4.1 written by gmsh, or VTU written by meshio."""
 
 import errno
 import os
@@ -14,28 +14,28 @@ from .mesh import GROUPS, WallMesh, joint_group
 from .session import gmsh_session
 
 TRIANGLE, QUADRILATERAL = 2, 3
-"""gmsh's numbers for the two kinds of elements."""
+"""gmsh's numbers for the two element types."""
 
 LAST_LINE = b"$EndElementData\n"
 
-NONE = -1
-"""Block of a joint element, joint of a triangle."""
+NO_NUMBER = -1
+"""Value for the block of a joint element and for the joint of a triangle, which do not exist."""
 
 
 def write_mesh(mesh: WallMesh, scene: Scene, path: str | Path) -> None:
-    """Write a mesh; the file is there whole, or as it was before.
+    """Write a mesh; after an error the file is as it was before.
 
     Parameters
     ----------
     mesh, scene
         The mesh and the wall that it was made of.
     path
-        Where to; its ending, ``.msh`` or ``.vtu``, says in which format. Its folder is made if missing.
+        Output file; its suffix, ``.msh`` or ``.vtu``, determines the format. Its folder is created if missing.
 
     Raises
     ------
     SceneError
-        For any other ending.
+        For any other suffix.
     """
     path = Path(path)
     check_suffix(path)
@@ -44,25 +44,25 @@ def write_mesh(mesh: WallMesh, scene: Scene, path: str | Path) -> None:
 
 
 def check_suffix(path: Path) -> None:
-    """Refuse a file name that says no format."""
+    """Refuse a file name whose suffix is not that of a mesh format."""
     if path.suffix.lower() not in _WRITERS:
         raise SceneError(str(path), f"must end in {' or '.join(_WRITERS)}, the formats of a mesh")
 
 
 def _write_msh(mesh: WallMesh, scene: Scene, name: str) -> None:
     triangle_group, interface_group = _groups(mesh, scene)
-    # In the order of the groups, since some readers take the data of elements to be in the file's order.
+    # Sorted by group, because some readers assume element data in the order of the file.
     order = np.argsort(interface_group, kind="stable")
     interfaces, interface_group = mesh.interfaces[order], interface_group[order]
     n_triangles, n_interfaces = len(mesh.triangles), len(interfaces)
     numbers = {
-        "block": np.concatenate([mesh.triangle_block, np.full(n_interfaces, NONE)]),
-        "joint": np.concatenate([np.full(n_triangles, NONE), mesh.joint[order]]),
+        "block": np.concatenate([mesh.triangle_block, np.full(n_interfaces, NO_NUMBER)]),
+        "joint": np.concatenate([np.full(n_triangles, NO_NUMBER), mesh.joint[order]]),
     }
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
     node_group = _block_group(scene)[mesh.block]
     with gmsh_session() as gmsh:
-        # One entity a group: with one for each of 20 000 blocks gmsh takes minutes.
+        # One entity per group: with one per block, gmsh takes minutes for 20 000 blocks.
         for group in np.unique(np.concatenate([triangle_group, interface_group])):
             entity = gmsh.model.addDiscreteEntity(2, group + 1)
             nodes = np.flatnonzero(node_group == group)
@@ -85,7 +85,7 @@ def _write_msh(mesh: WallMesh, scene: Scene, name: str) -> None:
             gmsh.view.write(view, name, append=True)
     with open(name, "rb") as file:
         file.seek(max(0, os.path.getsize(name) - len(LAST_LINE)))
-        if file.read() != LAST_LINE:  # gmsh does not look whether the disk is full
+        if file.read() != LAST_LINE:  # gmsh does not check whether the disk is full
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), name)
 
 
@@ -94,8 +94,8 @@ def _write_vtu(mesh: WallMesh, scene: Scene, name: str) -> None:
 
     cells = [("triangle", mesh.triangles), ("quad", mesh.interfaces)]
     data = {
-        "block": [mesh.triangle_block, np.full(len(mesh.interfaces), NONE)],
-        "joint": [np.full(len(mesh.triangles), NONE), mesh.joint],
+        "block": [mesh.triangle_block, np.full(len(mesh.interfaces), NO_NUMBER)],
+        "joint": [np.full(len(mesh.triangles), NO_NUMBER), mesh.joint],
         "group": [group + 1 for group in _groups(mesh, scene)],
     }
     if not len(mesh.interfaces):

@@ -1,4 +1,4 @@
-"""The mesh of a wall: blocks in triangles, joints as elements without thickness between nodes of their own."""
+"""The mesh of a wall: triangulated blocks, and joints as zero-thickness elements between the blocks' own nodes."""
 
 from dataclasses import dataclass
 
@@ -12,35 +12,35 @@ from .shapes import shape_of_blocks, triangulate
 
 MOST_TRIANGLES = 10_000_000
 GROUPS = ("block", "ground", "bed", "head", "base", "inner")
-"""What elements belong to: triangles to the wall's blocks or the ground, joint elements to one of four kinds."""
+"""Groups of elements: triangles belong to the wall's blocks or the ground, joint elements to four kinds of joint."""
 
 
 @dataclass(frozen=True, eq=False)
 class WallMesh:
     """Triangles of all blocks and the joint elements between them.
 
-    Every node belongs to one block, so blocks hang together through their joints alone. Blocks, nodes and
-    triangles come in the order of the scene's blocks, joint elements in the order of its joints and along
-    their tangents. Blocks of one shape have the same nodes and triangles in the same order.
+    Every node belongs to one block, so blocks are connected only through their joints. Blocks, nodes and triangles are
+    in the order of the scene's blocks, joint elements in the order of its joints and along their tangents. Blocks of
+    one shape have the same nodes and triangles in the same order.
 
     Parameters
     ----------
     points : (nn, 2) float
-        Nodes [m]. Those of a block's outline come first, counter-clockwise from its lowest corner, the left
-        one of two.
+        Nodes [m]. Those of a block's outline come first, counter-clockwise from its lowest corner, the left one if two
+        are level.
     first_node : (nb + 1,) int
-        Block ``i`` owns the nodes ``first_node[i]`` to ``first_node[i + 1]``.
+        Block ``i`` owns the nodes ``first_node[i]`` to ``first_node[i + 1]``, excluding the last.
     block : (nn,) int
         Block of each node.
     shape : (nb,) int
-        Shape of each block: those with the same number are congruent, nodes and all.
+        Shape of each block: blocks with the same number are congruent, including their nodes.
     triangles : (nt, 3) int
         Nodes of each triangle, counter-clockwise.
     triangle_block : (nt,) int
         Block of each triangle.
     interfaces : (ne, 4) int
-        Nodes a0, a1, b1, b0 of each joint element: a0 → a1 along the joint's tangent on the side of block a,
-        b0 and b1 across from them on block b. As a quadrilateral it has no area.
+        Nodes a0, a1, b1, b0 of each joint element: a0 → a1 along the joint's tangent on the side of block a, b0 and b1
+        opposite on block b. As a quadrilateral it has zero area.
     joint : (ne,) int
         Joint of each joint element.
     """
@@ -68,14 +68,14 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     scene
         The wall.
     cells
-        Cells in half a block along the course, and in a block's height: a full block of running bond is
-        2 `cells` by `cells` cells of four triangles. Blocks that are no such grid, those of drawings, get
+        Number of cells in half a block along the course, and in a block's height: a full block of running bond has 2
+        `cells` by `cells` cells of four triangles. Blocks that do not form such a grid, e.g. those of drawings, get
         triangles of about that size.
 
     Raises
     ------
     SceneError
-        For a number of cells that is none or too large, and where gmsh cannot be loaded.
+        For an invalid or too large number of cells, and if gmsh cannot be loaded.
     """
     check_whole_number("cells", cells)
     if 8 * cells**2 * len(scene.blocks) > MOST_TRIANGLES:
@@ -117,7 +117,7 @@ def _interfaces(scene: Scene, outline: NodeOutlines, first_node: Indices) -> tup
     step = _runs(np.zeros_like(outline.divisions), outline.divisions)
     a, b = scene.joints.block[joint].T
     start_a, start_b = outline.start[joint].T
-    # The outline of block b runs against the tangent: its first node on the joint is the last of a's.
+    # The outline of block b runs against the tangent: its first node on the joint faces the last one of block a.
     last = outline.divisions[joint] - step
     a0, a1 = ((start_a + i) % outline.count[a] + first_node[a] for i in (step, step + 1))
     b1, b0 = ((start_b + i) % outline.count[b] + first_node[b] for i in (last - 1, last))
@@ -127,8 +127,8 @@ def _interfaces(scene: Scene, outline: NodeOutlines, first_node: Indices) -> tup
 def joint_group(scene: Scene) -> Indices:
     """Group of each joint as an index into `GROUPS`, ``(nj,)``.
 
-    An inner joint is a potential crack inside a block, a base joint has a block that does not move; of the others,
-    bed joints are nearer to the level than to the upright.
+    An inner joint is a potential crack inside a block; a base joint touches a block that does not move. The others are
+    bed joints if at most 45° from the horizontal, else head joints.
     """
     run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
     bed, head, base, inner = (GROUPS.index(word) for word in ("bed", "head", "base", "inner"))
@@ -142,5 +142,5 @@ def _offsets(count: Indices) -> Indices:
 
 
 def _runs(start: Indices, count: Indices) -> Indices:
-    """The numbers start, start + 1, … of runs of given lengths, one run after another."""
+    """Concatenated runs of consecutive numbers start, start + 1, … of the given lengths."""
     return np.asarray(np.arange(count.sum()) + np.repeat(start - _offsets(count)[:-1], count))

@@ -1,8 +1,8 @@
-"""Nodes on the blocks' outlines: every joint is divided alike on both its sides.
+"""Nodes on the blocks' outlines; every joint is divided equally on both of its sides.
 
-Each side of a block falls into pieces, joints and the stretches between them, and each piece into equal parts.
-A node lies on the outline of its own block. Where a drawing leaves a gap between two blocks that counts as
-contact, the two nodes across it are that gap apart; everywhere else they coincide to rounding.
+Each side of a block consists of pieces, namely joints and the stretches between them, and each piece is divided into
+equal parts. A node lies on the outline of its own block. If a drawing leaves a gap between two blocks that counts as
+contact, the two nodes across it are separated by that gap; all other pairs coincide except for rounding.
 """
 
 from dataclasses import dataclass
@@ -19,15 +19,15 @@ class NodeOutlines:
     Parameters
     ----------
     points : (n, 2) float
-        Nodes [m]; the first of a block is its lowest corner, the left one of two.
+        Nodes [m]; the first of a block is its lowest corner, the left one if two are level.
     corner : (n,) bool
         Whether a node is a corner of its block.
     first : (nb + 1,) int
         Block ``i`` owns ``points[first[i]:first[i + 1]]``.
     divisions : (nj,) int
-        Equal parts of each joint.
+        Number of equal parts of each joint.
     start : (nj, 2) int
-        Local number, on block a and on block b, of the first node that each meets on the joint.
+        Local number, on block a and on block b, of the first node of each outline on the joint.
     """
 
     points: Array
@@ -43,25 +43,25 @@ class NodeOutlines:
 
 
 def outlines(scene: Scene, cells: int) -> NodeOutlines:
-    """Lay nodes on the outlines of all blocks.
+    """Place nodes on the outlines of all blocks.
 
     Parameters
     ----------
     scene
         The wall.
     cells
-        Parts of half a block along the course, and of a block's height. The ground has nodes at its corners
-        and on its joints only.
+        Parts of half a block along the course, and of a block's height. The ground has nodes only at its corners and on
+        its joints.
     """
     blocks, joints = scene.blocks, scene.joints
     along, length = _edges(blocks)
-    # On a joint, parts are as long as the smaller of its blocks wants them.
+    # On a joint, parts have the smaller of the lengths that its two blocks require.
     run = joints.ends[:, 1] - joints.ends[:, 0]
     wanted = [np.where(scene.wall[block], _target(scene, cells, block, run), np.inf) for block in joints.block.T]
     divisions = _parts(joints.length, np.minimum(*wanted))
     edge, reach = _reach(blocks, joints)
 
-    # Joints in the order in which the outlines meet them; each edge ends in an empty one.
+    # Joints in the order in which the outlines meet them; each edge ends with an empty piece.
     n_edges, n_sides = len(length), len(edge)
     edge = np.concatenate([edge, np.arange(n_edges)])
     low, high = np.concatenate([reach, np.column_stack([length, length])]).T
@@ -76,7 +76,7 @@ def outlines(scene: Scene, cells: int) -> NodeOutlines:
     gap_parts = np.where(low > before, _parts(low - before, target), 0)
     joint_parts = np.concatenate([np.repeat(divisions, 2), np.zeros(n_edges, dtype=np.int64)])[order]
 
-    # Pieces in turn: the stretch before a joint, the joint.
+    # Pieces alternate: the stretch before a joint, then the joint.
     parts = np.column_stack([gap_parts, joint_parts]).ravel()
     first_of_piece = np.concatenate([[0], np.cumsum(parts)])
     piece = np.repeat(np.arange(len(parts)), parts)
@@ -95,10 +95,10 @@ def outlines(scene: Scene, cells: int) -> NodeOutlines:
 
 
 def _turned(points: Array, corner: Mask, first: Indices, divisions: Indices, start: Indices) -> NodeOutlines:
-    """Outlines that all begin at the corresponding corner, however the blocks were drawn."""
+    """Rotate outlines to begin at the corresponding corner of each block, however it was drawn."""
     count = np.diff(first)
     block = np.repeat(np.arange(len(count)), count)
-    # No side of a lattice is level in this direction, so rounding does not decide.
+    # No side of a lattice is perpendicular to this direction, so rounding errors do not decide.
     height = np.where(corner, points @ [0.3, 1.0], np.inf)
     lowest = np.lexsort((height, block))[first[:-1]]
 
@@ -112,9 +112,9 @@ def _turned(points: Array, corner: Mask, first: Indices, divisions: Indices, sta
 
 
 def _target(scene: Scene, cells: int, block: Indices, along: Array) -> Array:
-    """Length of a part wanted on sides of given blocks ``(n,)`` and directions ``(n, 2)``, ``(n,)`` [m].
+    """Target length ``(n,)`` [m] of a part on sides of given blocks ``(n,)`` in directions ``(n, 2)``.
 
-    Without a bond a block counts as square as two halves make it.
+    Without a bond a block is treated as two square halves of its area.
     """
     if scene.bond is None:
         return np.asarray(np.sqrt(scene.blocks.area[block] / 2) / cells)
@@ -123,21 +123,21 @@ def _target(scene: Scene, cells: int, block: Indices, along: Array) -> Array:
 
 
 def _parts(length: Array, target: Array) -> Indices:
-    """Number of parts nearest to a wanted length; a tie goes down, whatever the rounding."""
+    """Number of parts nearest to a target length; ties are rounded down, whatever the rounding errors."""
     return np.maximum(1, np.floor(length / target + 0.499999)).astype(np.int64)
 
 
 def _edges(blocks: Blocks) -> tuple[Array, Array]:
-    """Direction ``(nv, 2)`` and length ``(nv,)`` [m] of every edge; an edge has the number of its start."""
+    """Direction ``(nv, 2)`` and length ``(nv,)`` [m] of every edge; an edge has the number of its first vertex."""
     vector = blocks.vertices[blocks.successor] - blocks.vertices
     length = np.hypot(*vector.T)
     return vector / length[:, None], length
 
 
 def _reach(blocks: Blocks, joints: Joints) -> tuple[Indices, Array]:
-    """Edge of each side of each joint ``(2 nj,)``, a before b, and where along it that begins and ends ``(2 nj, 2)``.
+    """Edge of each side of each joint ``(2 nj,)``, a before b, and where along it that side lies ``(2 nj, 2)`` [m].
 
-    What ends within the contact tolerance of the edge's end, ends there.
+    An end within the contact tolerance of the edge's end is moved to it.
     """
     along, length = _edges(blocks)
     edge = _edges_of_joints(blocks, joints)

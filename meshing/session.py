@@ -1,4 +1,4 @@
-"""A session of gmsh, opened quietly and closed whatever happens."""
+"""A gmsh session without output that is always closed."""
 
 import signal
 import threading
@@ -11,13 +11,13 @@ from runningbond.scene import SceneError
 
 @contextmanager
 def gmsh_session() -> Iterator[Any]:
-    """Give the gmsh module, started with an empty model; nothing of it is left afterwards.
+    """Yield the gmsh module, initialised with an empty model; the session is closed afterwards.
 
     Raises
     ------
     SceneError
-        Where the libraries that gmsh needs are missing, or the caller has a session of its own open,
-        which would end with this one.
+        If the libraries that gmsh needs are missing, or if the caller has a session of its own open, which would end
+        with this one.
     """
     try:
         import gmsh
@@ -26,7 +26,7 @@ def gmsh_session() -> Iterator[Any]:
         raise SceneError("gmsh", remedy) from error
     if gmsh.isInitialized():
         raise SceneError("gmsh", "has a session open; call gmsh.finalize() before meshing")
-    # Not interruptible: gmsh would otherwise take Ctrl-C from Python for good. It takes SIGTERM all the same.
+    # Not interruptible, or gmsh would take Ctrl-C from Python for good. It still takes SIGTERM, which is restored.
     listener = signal.getsignal(signal.SIGTERM)
     gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False, interruptible=False)
     if threading.current_thread() is threading.main_thread() and listener is not None:

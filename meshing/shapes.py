@@ -1,8 +1,8 @@
-"""Block shapes and their triangulations by gmsh: blocks with congruent nodes on their outlines share one.
+"""Block shapes and their triangulations by gmsh; blocks with congruent outline nodes share one shape.
 
-A shape whose opposite sides carry the same nodes is a grid of cells (gmsh's transfinite surface), each cell cut
-by both its diagonals: so a block is as stiff to the left as to the right. Any other shape gets gmsh's
-triangulation of the polygon.
+A shape with the same nodes on opposite sides is a grid of cells (gmsh's transfinite surface), each cell cut by both of
+its diagonals, so that a block is equally stiff to the left and to the right. Any other shape gets gmsh's triangulation
+of the polygon.
 """
 
 from dataclasses import dataclass
@@ -15,26 +15,26 @@ from runningbond.scene import Array, Indices, Mask
 from .outline import NodeOutlines
 from .session import gmsh_session
 
-SAME = 1e-9
-"""How far nodes of congruent outlines may differ, as a fraction of the smallest block."""
+CONGRUENCE_TOLERANCE = 1e-9
+"""Tolerance between the nodes of congruent outlines, as a fraction of the smallest block."""
 
 TRIANGLE = 2
 """gmsh's number for a triangle of three nodes."""
 
-STRAIGHT = 1e-3
-"""How far the sides of a grid may be from a parallelogram, as a fraction of its shortest part."""
+GRID_TOLERANCE = 1e-3
+"""Largest deviation of a grid's sides from a parallelogram, as a fraction of its shortest part."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """Triangulation of a block, its outline's first node at the origin.
+    """Triangulation of a block, with the first node of its outline at the origin.
 
     Parameters
     ----------
     inner : (n, 2) float
         Nodes inside [m], numbered after those of the outline.
     triangles : (nt, 3) int
-        Counter-clockwise.
+        Nodes of each triangle, counter-clockwise.
     """
 
     inner: Array
@@ -54,8 +54,8 @@ def shape_of_blocks(outline: NodeOutlines) -> tuple[Indices, Indices]:
     count = outline.count
     local = outline.points - np.repeat(outline.points[outline.first[:-1]], count, axis=0)
     size = np.maximum.reduceat(np.abs(local).max(axis=1), outline.first[:-1])
-    # A step that is no fraction of any length in sight, so that no coordinate lies where rounding decides.
-    rounded = np.rint(local / (np.sqrt(2) * SAME * size.min()))
+    # The rounding step is incommensurable with usual lengths, so no coordinate lies at a rounding threshold.
+    rounded = np.rint(local / (np.sqrt(2) * CONGRUENCE_TOLERANCE * size.min()))
     key = np.column_stack([rounded, outline.corner])
     shape, example = np.empty(len(count), dtype=np.int64), np.zeros(0, dtype=np.int64)
     for n in np.unique(count):
@@ -80,9 +80,9 @@ def triangulate(outline: NodeOutlines, blocks: Indices) -> list[Shape]:
 
 
 def _add_surface(gmsh: Any, points: Array, corner: Mask) -> tuple[int, list[int], float]:
-    """Add a closed ring of nodes, given with its corners; return the surface, its points and their unit of length."""
+    """Add a closed ring of nodes with its corners; return the surface, its points and their unit of length."""
     geo = gmsh.model.geo
-    # In units of the block's own size, since gmsh has absolute tolerances.
+    # In units of the block's own size, because gmsh has absolute tolerances.
     size = np.abs(points - points[0]).max()
     ring = [geo.addPoint(x, y, 0.0) for x, y in (points - points[0]) / size]
     lines = [geo.addLine(here, there) for here, there in zip(ring, ring[1:] + ring[:1], strict=True)]
@@ -103,7 +103,7 @@ def _is_grid(points: Array, corner: Mask) -> bool:
     south, east, north, west = (
         points[np.arange(a, b + 1) % len(points)] for a, b in zip(corners, [*corners[1:], len(points)], strict=True)
     )
-    tolerance = STRAIGHT * np.hypot(*(np.roll(points, -1, axis=0) - points).T).min()
+    tolerance = GRID_TOLERANCE * np.hypot(*(np.roll(points, -1, axis=0) - points).T).min()
     return all(
         len(near) == len(far) and np.abs((far[::-1] - near) - (far[-1] - near[0])).max() <= tolerance
         for near, far in ((south, north), (west, east))
@@ -111,7 +111,7 @@ def _is_grid(points: Array, corner: Mask) -> bool:
 
 
 def _read(gmsh: Any, surface: int, ring: list[int], size: float) -> Shape:
-    """One surface's triangles; cells are cut by both their diagonals."""
+    """Triangles of one surface; cells are cut by both of their diagonals."""
     mesh = gmsh.model.mesh
     nodes_of = [*(mesh.getNodes(0, point)[:2] for point in ring), mesh.getNodes(2, surface)[:2]]
     tag, coordinates = (np.concatenate(parts) for parts in zip(*nodes_of, strict=True))

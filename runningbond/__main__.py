@@ -1,4 +1,4 @@
-"""The console command, from its first moment: while the suite is loading, Ctrl-C ends it without a traceback."""
+"""Entry point of the console command; Ctrl-C ends it without a traceback even while the suite is loading."""
 
 import _thread
 import atexit
@@ -12,7 +12,7 @@ from contextlib import suppress
 from runningbond.own_packages import prefer_to_files
 
 MOMENT = 0.02
-"""Seconds in which a callback is over."""
+"""Seconds after which a callback has returned."""
 
 
 def main() -> None:
@@ -20,7 +20,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     _open_streams()
     sys.unraisablehook = _interrupted_again
-    # joblib says at its import where processes cannot share a lock; a campaign says so when it matters.
+    # joblib warns on import if processes cannot share a lock; a campaign reports it when it matters.
     warnings.filterwarnings("ignore", ".*joblib will operate in serial mode", UserWarning)
     prefer_to_files()
     from runningbond.commands.command_line import main as run
@@ -35,17 +35,17 @@ def main() -> None:
 
 
 def _open_streams() -> None:
-    """Let streams lead nowhere that were closed when the program was started.
+    """Open streams that were closed when the program was started, to the null device.
 
-    What is for standard error would come on standard output without, and files be opened under the numbers of both.
+    Otherwise standard error would go to standard output, and files would be opened under the descriptors of both.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:  # whose number is the lowest that is free
+        if getattr(sys, name) is None:  # its descriptor is the lowest free one
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
 
 
 def _interrupted_again(lost: "sys.UnraisableHookArgs") -> None:
-    """Interrupt once more where an interruption fell into a callback, as numba has, out of which no error comes."""
+    """Interrupt again if an interruption was raised in a callback, such as numba's, that swallows exceptions."""
     if lost.exc_type is not KeyboardInterrupt:
         sys.__unraisablehook__(lost)
         return
@@ -55,7 +55,7 @@ def _interrupted_again(lost: "sys.UnraisableHookArgs") -> None:
     def again() -> None:
         if sys.platform == "win32":
             _thread.interrupt_main()
-        else:  # which wakes it as well
+        else:  # a signal also wakes the main thread
             signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
     interruptions()
@@ -63,13 +63,13 @@ def _interrupted_again(lost: "sys.UnraisableHookArgs") -> None:
 
 
 def _leave_at_once(code: int) -> None:
-    """Leave past the ends of libraries, where threads that HiGHS was interrupted in abort the process."""
+    """Exit without the static destructors of libraries, in which interrupted threads of HiGHS abort the process."""
     if "multiprocessing.process" in sys.modules:
         from multiprocessing import active_children
 
-        for worker in active_children():  # without work, they would be waited for until they leave of themselves
+        for worker in active_children():  # idle workers would be waited for until they time out
             worker.terminate()
-    atexit._run_exitfuncs()  # joblib's workers and folders go
+    atexit._run_exitfuncs()  # removes joblib's workers and folders
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):
             stream.flush()

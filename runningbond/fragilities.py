@@ -1,4 +1,4 @@
-"""Fragility: how likely a wall is brought down by motions of the ground of some intensity, over a set of records."""
+"""Fragility: the probability that ground motions of a given intensity bring a wall down, from a set of records."""
 
 import math
 from collections.abc import Iterable
@@ -19,7 +19,7 @@ from .tables import Table
 from .wall import Wall
 
 TAILS = (0.05, 0.95)
-"""Shares of medians below the two ends of their interval."""
+"""Quantiles of resampled medians at the two ends of their interval."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,19 +29,19 @@ class Fragility:
     Parameters
     ----------
     intensity : (n,) float
-        Peak acceleration of the ground at which each record brings the wall down, ascending [g].
+        Peak ground acceleration at which each record brings the wall down, ascending [g].
     stood : (m,) float
-        Largest one tried of records that never bring it down, ascending [g].
+        Largest peak acceleration tried for each record that never brings it down, ascending [g].
     median, dispersion
-        Of the log-normal distribution that fits them by maximum likelihood, `stood` as bounds from below (censored on
-        the right): median, and standard deviation of the logarithm.
+        Median, and standard deviation of the logarithm, of the log-normal distribution fitted by maximum likelihood
+        with `stood` as right-censored data.
     interval
-        Of the median, at 90 %, from records drawn again and again with a seed, as wide as few of them make it; without
-        an upper end (infinite) where too few of them bring the wall down.
+        90 % confidence interval of the median from a seeded bootstrap of the records, widened for small samples; its
+        upper end is infinite if too few records bring the wall down.
     runs
-        A row a record: its bracket of λ, and what became of it.
+        One row per record: its bracket of λ, status and message.
     left_out
-        Records without an answer.
+        Number of records without an answer.
     """
 
     intensity: Array
@@ -53,14 +53,14 @@ class Fragility:
     left_out: int
 
     def probability(self, intensity: Array | float) -> Array:
-        """Probability of a collapse at intensities [g], not negative, which a `SceneError` refuses."""
+        """Probability of collapse at intensities [g]; a `SceneError` for negative ones."""
         try:
             level = np.asarray(intensity, dtype=float)
         except (TypeError, ValueError):
             level = np.array(np.nan)
         if not (level >= 0).all():
             raise SceneError("intensity", "must be numbers of at least 0, in g", intensity)
-        with np.errstate(divide="ignore"):  # at none
+        with np.errstate(divide="ignore"):  # log of an intensity of 0
             return np.asarray(ndtr(np.log(level / self.median) / max(self.dispersion, 1e-12)))
 
     def __repr__(self) -> str:
@@ -80,23 +80,23 @@ def fragility(
     seed: int = 0,
     draws: int = 1000,
 ) -> Fragility:
-    """Find the critical scale of every record, and the fragility that follows.
+    """Find the critical scale of every record and fit the fragility to them.
 
     Parameters
     ----------
     wall
         The wall, with a ``load.history`` whose file is replaced by each record's in turn.
     records
-        Files; paths that are relative are so to the wall's folder, as in its scene file.
+        Files; relative paths refer to the wall's folder, as in its scene file.
     model, tolerance, folder, jobs
-        As of `sweep`: with a folder, only records that are not there are computed.
+        As in `sweep`: with a folder, only missing records are computed.
     seed, draws
-        Of the interval of the median.
+        Seed and number of samples of the bootstrap for the interval of the median.
 
     Raises
     ------
     SceneError
-        Where the wall has no record, or fewer than two records bring it down.
+        If the wall has no record, or fewer than two records bring it down.
     """
     check_wall(wall)
     if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
@@ -131,11 +131,11 @@ def fragility(
 
 
 def interval_of_median(level: Array, stands: Mask, seed: int, draws: int) -> tuple[float, float]:
-    """Find the interval of the median of `fitted` at 90 %, from records drawn again and again.
+    """Find the 90 % confidence interval of the median of `fitted` by a bootstrap over the records.
 
-    Medians of records drawn again scatter by √((n−1)/n) times what those of other records do, n being the number of
-    falls, and as if the dispersion were known: the interval is widened by as much, and by Student's distribution over
-    the normal one. That of n log-normal levels is then the exact one.
+    With n falls, bootstrap medians scatter by √((n−1)/n) times the scatter of medians of independent samples, and as if
+    the dispersion were known. The interval is therefore widened by √(n/(n−1)) and by the ratio of quantiles of
+    Student's distribution to the normal one, which makes it exact for n log-normal levels.
     """
     again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
     medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]
@@ -146,19 +146,19 @@ def interval_of_median(level: Array, stands: Mask, seed: int, draws: int) -> tup
 
 
 def fitted(level: Array, stands: Mask) -> tuple[float, float]:
-    """Fit the log-normal distribution of the level at which something falls, by maximum likelihood.
+    """Fit a log-normal distribution to right-censored collapse levels by maximum likelihood.
 
     Parameters
     ----------
     level : (n,) float
-        Where it fell, or the largest at which it was seen to stand; of any unit.
+        Level at which each fell, or the largest at which it stood; in any unit.
     stands : (n,) bool
-        Which of them stand, so fall somewhere above.
+        Which of them stood, so that their collapse level is larger.
 
     Returns
     -------
     tuple
-        Median, in the unit of the levels, infinite with fewer than two falls; standard deviation of the logarithm.
+        Median in the unit of the levels, infinite with fewer than two falls; standard deviation of the logarithm.
     """
     if np.count_nonzero(~stands) < 2:
         return math.inf, 0.0

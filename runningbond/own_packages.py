@@ -1,4 +1,4 @@
-"""The packages of methods, which stand beside this one under names that a user's own files and folders may have too."""
+"""The top-level packages of methods, whose names a user's own files and folders may have too."""
 
 import sys
 from importlib.util import find_spec
@@ -11,28 +11,28 @@ PACKAGES = {
     "homog": ("homog",),
     "meshing": ("meshing",),
 }
-"""The packages, each with those that its models need: deformable blocks ask rigid ones for a second opinion."""
+"""The packages, each with those that its models import; deformable blocks are compared with rigid ones."""
 
 
 def prefer_to_folders() -> None:
-    """Let Python find the packages where folders without code have their names, as those that results are kept in.
+    """Make Python find the packages if folders without code, such as those of results, have the same names.
 
-    Of an editable installation it would take such a folder, which comes first, for a package that is empty.
+    In an editable installation Python would import such a folder, which comes first, as an empty package.
     """
     if any(other.is_dir() for other in _taken_instead().values()):
         sys.path.append(str(HOUSE))
 
 
 def prefer_to_files() -> None:
-    """Let Python find the packages before anything of a user's, in a process that runs the suite and nothing else."""
+    """Make Python find the packages before a user's files, in a process that runs only the suite."""
     if _taken_instead():
         sys.path.insert(0, str(HOUSE))
 
 
 def hidden_package(module: str) -> str | None:
-    """What is to be said where Python would import a file of a user's in place of a package that a module needs.
+    """The error message if Python would import a user's file in place of a package that a module needs, else None.
 
-    None where it would not. The user's own scripts may import that file, so it is not replaced.
+    The file is not overridden, because the user's own scripts may import it.
     """
     needed = PACKAGES.get(module.split(".")[0], tuple(PACKAGES))
     for name, other in _taken_instead().items():
@@ -42,13 +42,13 @@ def hidden_package(module: str) -> str | None:
 
 
 def _taken_instead() -> dict[str, Path]:
-    """What would be imported in place of packages, by their names."""
+    """Files and folders that would be imported in place of packages, by the names of these."""
     found = {name: _place(name) for name in PACKAGES}
     return {name: place for name, place in found.items() if place is not None and HOUSE not in place.parents}
 
 
 def _place(name: str) -> Path | None:
-    """The file that a package is made from, or the first folder of one that has none."""
+    """The file of a package, or the first folder of a package without one."""
     if name in sys.modules:
         where = getattr(sys.modules[name], "__file__", None)
         return None if where is None else Path(where).resolve()

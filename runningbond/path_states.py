@@ -1,4 +1,4 @@
-"""The states that a wall passes through on its way to collapse, collected while a model runs."""
+"""The states of a wall along its load path to collapse, collected while a model runs."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -16,26 +16,26 @@ if TYPE_CHECKING:
 class PathState:
     """A wall under one multiple of its live load.
 
-    Joint points stand joint by joint, those of a joint in the sense of its tangent, as in `Result.joints`. They are
-    those of the model's own mesh; where blocks may crack, their pieces are blocks here.
+    Joint points are those of the model's own mesh, ordered by joint and within a joint along its tangent, as in
+    `Result.joints`. If blocks may crack, their pieces count as blocks here.
 
     Parameters
     ----------
     multiplier
-        λ; where a support settles, the share of the dead load that it bears.
+        λ; for a support that settles, the share of the dead load that it still carries.
     motion : (nb, 3) float
-        Displacement of each block's centroid [m] and rotation [rad] since the wall was built.
+        Displacement of each block's centroid [m] and rotation [rad] from the undeformed wall.
     force : (np, 2) float
-        Normal and tangential force of each joint point [N], tension positive: of the side that bears, where blocks have
-        turned against each other.
+        Normal and tangential force of each joint point [N], tension positive; at finite displacements along the normal
+        and the tangent of the side that is in contact.
     opening, slip : (np,) float
         Jumps of the joint points [m]; at finite displacements along the normal and the tangent that turn with block a.
     velocity : (nb, 3) float
-        Of the centroid [m/s] and of rotation [rad/s]; zero at rest.
+        Velocity of the centroid [m/s] and of the rotation [rad/s]; zero at rest.
     damage : (np,) float
-        0 sound … 1 broken.
+        From 0 (sound) to 1 (broken).
     points : JointPoints
-        Where the joint points are, in the order of `force`: their position (np, 2) [m], their joint and blocks.
+        The joint points in the order of `force`, with position (np, 2) [m], joint and blocks.
     """
 
     multiplier: float
@@ -52,7 +52,7 @@ class PathState:
 
 
 def collected(recorder: "Recorder") -> list[PathState]:
-    """The states that a recorder without a folder has seen, in the order in which they came."""
+    """The states that a recorder without a folder has collected, in order."""
     points = recorder.discretisation.points
     order = np.lexsort(((points.position * points.tangent).sum(axis=1), points.joint))
     ordered = points.part(order)

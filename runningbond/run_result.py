@@ -1,4 +1,4 @@
-"""What a run of a wall returns: the outcome with its tables, its picture and the states on the way."""
+"""Result of a run of a wall: the outcome with its tables, its picture and the states along the load path."""
 
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 
 class Result:
-    """What a model says of a wall.
+    """Result of a model for a wall.
 
     Parameters
     ----------
     wall
         The wall.
     outcome
-        The outcome; its scalars are attributes of the result as well, and are documented there.
+        The outcome, which documents its scalars; they are attributes of the result as well.
     states
-        The states that the wall passed through; None where they were not collected.
+        The states along the load path; None if they were not collected.
     """
 
     model: str
@@ -62,26 +62,26 @@ class Result:
 
     @property
     def states(self) -> list[PathState]:
-        """States at rest in the order in which they were found, then the fall; none of a model that follows no path."""
+        """States at rest in the order in which they were found, then the fall; empty for a model without a path."""
         if self._states is None:
             raise ValueError(f"states were not collected; ask for them: wall.run({self.model!r}, states=True)")
         return self._states
 
     @cached_property
     def curve(self) -> Table:
-        """Pushover curve: ``displacement`` of the control point along the live load [m], ``multiplier``, and the path.
+        """Pushover curve: ``displacement`` of the control point along the live load [m], ``multiplier``, and more.
 
-        The path has every support's reactions and the loads' works, by the names in ``outcome.path_columns``. Of a
-        model that follows no path but knows the forces at collapse it is one row.
+        The other columns, named in ``outcome.path_columns``, are the reactions of every support and the work of the
+        loads. For a model that computes only the forces at collapse the table has one row.
         """
         return table(self.outcome.curve_columns())
 
     @cached_property
     def blocks(self) -> Table:
-        """Blocks, the ground last.
+        """Blocks, with the ground last.
 
         ``x``, ``y`` of the centroid [m], ``area`` [m²], ``mass`` [kg], ``fixed``, and ``u``, ``v`` [m], ``rotation``
-        [rad] of the mechanism, its fastest corner moving by one metre; not a number without one.
+        [rad] of the mechanism, scaled to 1 m at its fastest corner; NaN without a mechanism.
         """
         scene = self.wall.scene
         (x, y), (u, v, rotation) = scene.blocks.centroid.T, self._mechanism().T
@@ -90,11 +90,10 @@ class Result:
 
     @cached_property
     def joints(self) -> Table:
-        """Joint points, two a joint, or those that forces are known at along one that crushes or closes.
+        """Joint points: two per joint, or all integration points of joints that crush or close.
 
         ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
-        tension positive, and ``opening`` and ``slip`` [m] of the mechanism. Not a number is what the model does not
-        say.
+        tension positive, and ``opening`` and ``slip`` [m] of the mechanism. NaN where the model gives no value.
         """
         scene = self.wall.scene
         force = self.outcome.force
@@ -108,9 +107,9 @@ class Result:
         return table({**place, **forces, "opening": opening, "slip": slip})
 
     def plot(self, what: Literal["mechanism", "curve"] | None = None, axes: "Axes | None" = None) -> "Axes":
-        """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes.
+        """Draw the mechanism or the curve into axes; by default the mechanism if there is one.
 
-        Without axes it is a figure of its own, which pyplot shows.
+        Without axes a new figure is made, which pyplot shows.
         """
         if what not in (None, "mechanism", "curve"):
             raise SceneError("what", "must be mechanism or curve", what)
@@ -143,9 +142,9 @@ class Result:
 
 
 def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, parameters: dict[str, Any]) -> Result:
-    """Run a model on a wall, as `Wall.run` says."""
+    """Run a model on a wall, as documented in `Wall.run`."""
     model = find_model(model)
-    check_parameters(model, parameters)  # of which some may be named as `run_model` names its own
+    check_parameters(model, parameters)  # some may have the names of parameters of `run_model`
     for line in plausibility.warnings(wall.scene):
         warn(line, stacklevel=3)
     recorder = model.observer(wall.scene, None) if states and model.observer else None

@@ -1,4 +1,4 @@
-"""A scene's description as the text of a scene file."""
+"""Write the description of a scene as the text of a scene file."""
 
 import json
 import re
@@ -9,12 +9,12 @@ from .scene import SceneError
 
 
 def toml(description: Mapping[str, Any]) -> str:
-    """Nested dictionaries as TOML, tables of the top level under headings of their own and all others inline.
+    """Nested dictionaries as TOML: top-level tables under their own headings, all others inline.
 
     Raises
     ------
     SceneError
-        For a value that TOML has no words for.
+        For a value that TOML cannot express.
     """
     tables = {key: value for key, value in description.items() if isinstance(value, Mapping)}
     lines = [f"{_key(key)} = {_value(value, key)}" for key, value in description.items() if key not in tables]
@@ -37,6 +37,6 @@ def _value(value: Any, name: str) -> str:
         outlines = any(isinstance(corner, list) for item in value if isinstance(item, list) for corner in item)
         return "[\n" + "".join(f"    {item},\n" for item in items) + "]" if outlines else f"[{', '.join(items)}]"
     if isinstance(value, (bool, int, float, str)):
-        # JSON's words are TOML's, but for one control character and for the range of floats, which no scene has.
+        # JSON literals are valid TOML, except one control character and non-finite floats, which no scene has.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     raise SceneError(name, "is an object of Python, which no file can hold", value)

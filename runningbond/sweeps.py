@@ -22,7 +22,7 @@ ANSWER = ("multiplier", "lower", "upper", "status", "seconds", "message")
 
 
 def check_wall(wall: object) -> None:
-    """Refuse what is no wall."""
+    """Raise a `SceneError` for anything but a `Wall`."""
     if not isinstance(wall, Wall):
         raise SceneError("wall", "must be a Wall, as rb.read gives one", wall)
 
@@ -47,27 +47,27 @@ def sweep(
     changes
         Values of each key that varies, by its full name: ``{"joint.friction": [0.4, 0.6]}``.
     model
-        Name of a model, or a `Model` of one's own.
+        Name of a model, or a user-defined `Model`.
     tolerance
-        Relative width of the brackets asked for.
+        Requested relative width of the brackets.
     displacements, distance
-        Whether the model follows walls through finite displacements, and how far live loads push them there [m].
+        Small or finite displacements, and the distance to which live loads push walls at finite ones [m].
     folder
-        Where outcomes are kept; a sweep with the same folder computes only what is not there. None keeps nothing.
+        Folder of the outcomes; a sweep with the same folder computes only those that are missing. None keeps nothing.
     jobs
-        Number of processes; −1 is one a core.
+        Number of processes; −1 is one per core.
 
     Returns
     -------
     Table
-        A row a combination, the last key varying fastest: the values of the keys, then `ANSWER`. Combinations that
-        describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
+        One row per combination, the last key varying fastest: the values of the keys, then `ANSWER`. Combinations that
+        are no valid wall, or to which the model does not apply, have the status ``refused`` and the reason as message.
 
     Raises
     ------
     SceneError
-        For displacements that the model does not know, a key without a value, and where no combination describes a
-        wall, for example because a key is misspelt.
+        If the model does not support the displacements, a key has no values, or no combination is a valid wall, for
+        example because a key is misspelt.
     """
     model = going_far(find_model(model), displacements, distance)
     check_wall(wall)
@@ -94,7 +94,7 @@ def sweep(
         except SceneError as refusal:
             names.append(f"case {number}")
             refusals[names[-1], model.name] = refusal
-        else:  # named after what it is computed from, an outcome is used again when keys or values are added
+        else:  # named after its input, an outcome is reused when keys or values are added
             names.append(fingerprint(scene, model, tolerance)[:16])
             scenes[names[-1]] = scene
     if refusals and not scenes:

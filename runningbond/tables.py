@@ -1,4 +1,4 @@
-"""Tables: pandas where it is installed, or else structured arrays with the same columns."""
+"""Tables: pandas data frames if pandas is installed, otherwise structured arrays with the same columns."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
@@ -10,7 +10,7 @@ Table: TypeAlias = Any
 
 
 def table(columns: Mapping[str, Any]) -> Table:
-    """Columns of one length as a table."""
+    """Make a table of columns of equal length."""
     ready = {name: _column(values) for name, values in columns.items()}
     try:
         from pandas import DataFrame
@@ -24,7 +24,7 @@ def table(columns: Mapping[str, Any]) -> Table:
 
 
 def _column(values: Sequence[Any]) -> Any:
-    """Numbers as numbers, None among them as not a number; anything else as it is."""
+    """A column as an array: of numbers, with None as NaN, or of objects."""
     if isinstance(values, np.ndarray):
         return values
     if all(value is None or isinstance(value, (bool, int, float, np.number, np.bool_)) for value in values):

@@ -1,4 +1,4 @@
-"""A wall in Python: the tables of a scene file, checked like one, changed by copies, run and drawn."""
+"""A wall in Python: the tables of a scene file, with the same checks; changed by copies, run and drawn."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -38,7 +38,7 @@ TABLES = {
 TABLE_OF = {key: table for table, keys in TABLES.items() for key in keys}
 """The table of each of them."""
 
-WHOLE = (
+TOP_LEVEL = (
     "title",
     "wall",
     "block",
@@ -52,7 +52,7 @@ WHOLE = (
     "assign",
     "tie",
 )
-"""What a scene file has at its top, which is given as a whole."""
+"""Keys at the top level of a scene file, which are given as whole tables or values."""
 
 DEFAULTS: dict[str, Any] = {
     "block": {},
@@ -69,27 +69,27 @@ class Wall:
     Parameters
     ----------
     description
-        What a scene file says, as nested dictionaries (docs/scene-file.md). Tuples and arrays count as lists. Where
-        the file knows a kind of load or a law by its name, a Python object may stand.
+        The contents of a scene file as nested dictionaries (docs/scene-file.md). Tuples and arrays count as lists. In
+        place of the name of a load or of a joint law, a Python object may be given.
     folder
-        Where drawings are looked up.
+        Folder that relative paths of drawings and records refer to.
 
     Raises
     ------
     SceneError
-        For a description of no wall: one line that names the key, the value and what would be right.
+        If the description is not a valid wall: one line that names the key, the value and what is right.
     """
 
     def __init__(self, description: Mapping[str, Any], folder: str | Path = ".") -> None:
         if not isinstance(description, Mapping):
             raise SceneError("description", "must be a mapping of the tables of a scene file", description)
         self._description: dict[str, Any] = _as_in_a_file(description)
-        self.folder = path_of("folder", folder).absolute()  # whichever folder is the current one later
-        self.scene  # noqa: B018 - built at once, so that what is wrong is said where it is written
+        self.folder = path_of("folder", folder).absolute()  # the current folder may change later
+        self.scene  # noqa: B018 - built at once, so that errors are raised where the description is written
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any], folder: str | Path = ".") -> "Wall":
-        """The wall that nested dictionaries describe, as a scene file would."""
+        """Build a wall from nested dictionaries with the contents of a scene file."""
         return cls(description, folder)
 
     @classmethod
@@ -103,7 +103,7 @@ class Wall:
         thickness: float,
         **keys: Any,
     ) -> "Wall":
-        """A panel of running bond.
+        """Build a panel of running bond.
 
         Parameters
         ----------
@@ -112,13 +112,13 @@ class Wall:
         block_width, block_height, thickness
             Size of a block [m].
         keys
-            The other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names
-            (``density`` [kg/m³], ``young`` [Pa], ``friction``, ``normal_stiffness`` and ``shear_stiffness`` [Pa/m], or
-            ``mortar`` in their place); of ``[wall]`` ``first_course``, ``ends``, a list of tables ``opening`` and, in
-            place of `height` and `block_height`, ``course_heights``; whole tables and what stands at the
-            file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
-            more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
-            lateral unless given.
+            Other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names (``density``
+            [kg/m³], ``young`` [Pa], ``friction``, and ``normal_stiffness`` and ``shear_stiffness`` [Pa/m] or
+            ``mortar``); those of ``[wall]`` by ``first_course``, ``ends``, ``opening`` (a list of tables) and
+            ``course_heights`` (in place of `height` and `block_height`); whole tables and top-level keys
+            (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that has no further keys by its
+            kind alone (``support="corners"``). Defaults: gravity 9.81 m/s², the ground as support, a lateral live
+            load.
 
         Examples
         --------
@@ -142,14 +142,15 @@ class Wall:
         thickness: float,
         **keys: Any,
     ) -> "Wall":
-        """A wall given course by course, with the other parameters of `running_bond`.
+        """Build a wall course by course, with the other parameters of `running_bond`.
 
         Parameters
         ----------
         courses
-            Bottom to top; each a list of widths in blocks, left to right, negative for an opening.
+            From bottom to top; each a list of widths from left to right in units of `block_width`, negative for an
+            opening.
         block_width, block_height, thickness, keys
-            As of `running_bond`.
+            As in `running_bond`.
         """
         block = {"block_width": block_width, "block_height": block_height, "thickness": thickness}
         return cls._built("courses", {"courses": courses, **block}, keys)
@@ -166,25 +167,26 @@ class Wall:
         heal: float | None = None,
         **keys: Any,
     ) -> "Wall":
-        """A wall of stones as they are, with the keys of `running_bond`.
+        """Build a wall from the outlines of its stones, with the keys of `running_bond`.
 
         Parameters
         ----------
         outlines
-            Simple polygons, each the corners of a stone, ``(n, 2)``; blocks have their numbers.
+            Simple polygons, each with the corners of one stone, ``(n, 2)``; blocks are numbered in this order.
         ground
-            Polygons of the ground. Without any a flat strip is laid under the lowest stones if the support needs one.
+            Polygons of the ground. If none are given and the support needs ground, a flat strip is added under the
+            lowest stones.
         thickness
-            Of the wall [m].
+            Thickness of the wall [m].
         units
-            Of the corners: ``"mm"``, ``"cm"``, ``"m"``, ``"in"`` or ``"ft"``.
+            Unit of the corners: ``"mm"``, ``"cm"``, ``"m"``, ``"in"`` or ``"ft"``.
         expand
-            Of the widest joint [m], where stones were drawn with the mortar between them: they take it, each to the
-            middle of the joint.
+            Width of the widest mortar joint [m], for stones drawn with the mortar between them: each stone is
+            extended to the middle of its joints.
         heal
-            Gaps and overlaps up to this are closed [m].
+            Largest gap or overlap that is closed [m].
         keys
-            As of `running_bond`.
+            As in `running_bond`.
 
         Examples
         --------
@@ -202,8 +204,8 @@ class Wall:
         table_of = TABLE_OF | dict.fromkeys(("first_course", "ends", "course_heights", "opening"), "wall")
         tables: list[dict[str, Any]] = []
         for key, value in keys.items():
-            if key not in table_of and key not in WHOLE:
-                raise SceneError(key, f"is not a key of a wall{suggestion(key, [*table_of, *WHOLE])}", value)
+            if key not in table_of and key not in TOP_LEVEL:
+                raise SceneError(key, f"is not a key of a wall{suggestion(key, [*table_of, *TOP_LEVEL])}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
         given = {"wall": {key: value for key, value in wall.items() if value is not None}}
@@ -215,15 +217,15 @@ class Wall:
         return cls(description)
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Wall":
-        """A copy with some keys changed, checked anew.
+        """Return a copy with some keys changed and everything checked again.
 
         Parameters
         ----------
         changes
-            Values by the keys' full names: ``{"joint.friction": 0.7, "tie[0].yield": 5e4}``. None takes a key out.
+            Values by the full names of keys: ``{"joint.friction": 0.7, "tie[0].yield": 5e4}``. None removes a key.
         tables
-            Keys by table: ``joint={"friction": 0.7}``. Tables are merged with those that are there, but one that
-            names its ``kind`` takes the place of the old one.
+            Keys by table: ``joint={"friction": 0.7}``. Tables are merged with the existing ones, except that a table
+            with a ``kind`` replaces the old one.
 
         Examples
         --------
@@ -255,13 +257,13 @@ class Wall:
 
     @property
     def description(self) -> dict[str, Any]:
-        """A copy of what a scene file would say, as nested dictionaries."""
+        """A copy of the contents of the scene file, as nested dictionaries."""
         copy: dict[str, Any] = _as_in_a_file(self._description)
         return copy
 
     @cached_property
     def scene(self) -> Scene:
-        """The wall as models see it: blocks, joints, materials, support and loads."""
+        """The input of the models: blocks, joints, materials, support and loads."""
         return scene_from_dict(self.description, folder=self.folder)
 
     def run(
@@ -272,18 +274,18 @@ class Wall:
         Parameters
         ----------
         model
-            Name of a model, for example ``"limit"`` or ``"dem-static"``, or a `Model` of one's own.
+            Name of a model, for example ``"limit"`` or ``"dem-static"``, or a user-defined `Model`.
         tolerance
-            Relative width of the bracket asked for.
+            Requested relative width of the bracket.
         states
-            Collect the states that the wall passes through, for `Result.states`.
+            Whether to collect the states along the load path, for `Result.states`.
         parameters
-            Parameters of the model, by its own names.
+            Parameters of the model, by their names.
 
         Raises
         ------
         SceneError
-            For an unknown model, or one that does not apply to the wall.
+            If the model is unknown or does not apply to the wall.
         """
         from .run_result import run_wall
 
@@ -301,28 +303,29 @@ class Wall:
         folder: str | Path | None = None,
         jobs: int = -1,
     ) -> "Draws":
-        """Run a model that follows a path on this wall, and on others that differ in nothing that is known.
+        """Run a model that follows a load path on this wall and on copies that differ within the scatter of the input.
 
         Parameters
         ----------
         model, tolerance
-            As of `run`.
+            As in `run`.
         number
-            How many runs; the first is of the wall as it is.
+            Number of runs; the first is of the wall as it is.
         scatter
-            ``"bits"``, the last ones of densities and frictions; or ``"size=0.01,friction=0.05"``, or one of them: the
-            blocks' sizes within a relative tolerance, each joint's friction by the standard deviation of its logarithm.
+            ``"bits"`` changes the last bits of densities and frictions; ``"size=0.01,friction=0.05"``, or one of the
+            two, the sizes of blocks within a relative tolerance and the friction of each joint by a standard deviation
+            of its logarithm.
         displacements, distance
-            Whether the model follows walls through finite displacements, and how far live loads push them there [m].
+            Small or finite displacements, and the distance to which live loads push a wall at finite ones [m].
         folder
-            Where outcomes are kept and found again; None keeps nothing.
+            Folder in which outcomes are kept and found again; None keeps nothing.
         jobs
-            Number of processes; −1 is one a core.
+            Number of processes; −1 is one per core.
 
         Raises
         ------
         SceneError
-            For a model that follows no path, or no number of draws; and as of `run`.
+            If the model follows no load path or the number of draws is not positive; and as in `run`.
         """
         from .campaigns import ctrl_c_passed_on
         from .draws import Sampling
@@ -341,12 +344,12 @@ class Wall:
         Parameters
         ----------
         model
-            Name of a model in motion.
+            Name of a dynamic model.
         scale
             Factor on the record, λ.
         settings
-            ``points``, to be followed instead of the upper corners (m, ``(k, 2)``), and ``after``, the time for which
-            the wall is followed once a block has fallen [s].
+            ``points``, which are followed instead of the upper corners (m, ``(k, 2)``), and ``after``, the time for
+            which the wall is followed after a block has fallen [s].
         """
         from .models import respond
         from .pictures.response import DrawnResponse
@@ -354,20 +357,20 @@ class Wall:
         return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)), wall=self.scene)
 
     def advise(self, tolerance: float = 0.05, *, finite: bool = False) -> "Advice":
-        """Run no more models than the wall needs for a bracket as narrow as asked, the cheapest first.
+        """Run models from the cheapest on until the bracket is as narrow as requested.
 
         Parameters
         ----------
         tolerance
-            Relative width of the bracket that is asked for.
+            Requested relative width of the bracket.
         finite
-            Whether the wall is followed at finite displacements in the end, however small they may be.
+            Whether the last model follows the wall at finite displacements even if they are small.
 
         Returns
         -------
         Advice
-            ``rungs``, one a model with its outcome and what follows from it, and ``outcome()``, the answer; printed it
-            is what ``runningbond advise`` says.
+            ``rungs``, one per model with its outcome and the conclusion from it, and ``outcome()``, the answer; it
+            prints as ``runningbond advise`` does.
         """
         from .compare.advice import advise
 
@@ -376,9 +379,9 @@ class Wall:
         return advise(self.scene, tolerance, finite=finite)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw the wall with its support and loads into axes, or a figure of its own where none are given.
+        """Draw the wall with its support and loads into axes, by default those of a new figure.
 
-        A figure of several, with ``layout="constrained"``, leaves room for the words around each.
+        A figure with several axes needs ``layout="constrained"`` to leave room for the text around each.
         """
         from .pictures.flat import draw_wall, figure_of
 
@@ -390,12 +393,12 @@ class Wall:
         return axes
 
     def to_toml(self, path: str | Path) -> None:
-        """Write the wall as a scene file, from which `read` makes the same wall.
+        """Write the wall as a scene file that `read` turns into the same wall.
 
         Raises
         ------
         SceneError
-            Where a law or a load is an object of Python, which no file can hold.
+            If a law or a load is a Python object, which a file cannot hold.
         """
         from .results import write_atomically
         from .scene_writer import toml
@@ -427,12 +430,12 @@ class Wall:
 
 
 def read(wall: str | Path) -> Wall:
-    """Read a wall from a scene file, or a published one by its name, for example ``"panel-01"``.
+    """Read a wall from a scene file, or a published wall by its name, for example ``"panel-01"``.
 
     Raises
     ------
     SceneError
-        Where there is no such file, or it describes no wall.
+        If there is no such file or it is not a valid wall.
     """
     from .compare.published import find_scene
 
@@ -441,9 +444,9 @@ def read(wall: str | Path) -> Wall:
 
 
 def _check_has_its_table(name: str, value: object) -> None:
-    """Refuse a key that is named without the table it belongs to."""
+    """Refuse a key that is given without the table it belongs to."""
     table = TABLE_OF.get(name, "wall")
-    if table == "wall" and (name in WHOLE or "." in name):  # a full name need not wait for the schema to be read
+    if table == "wall" and (name in TOP_LEVEL or "." in name):  # saves reading the schema
         return
     from .scene.schema import is_key_of
 
@@ -458,13 +461,13 @@ def _as_in_a_file(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_as_in_a_file(inner) for inner in value]
     if hasattr(value, "__array__"):
-        array = np.asarray(value)  # one of objects holds whatever they are, polygons of unlike numbers of corners say
+        array = np.asarray(value)  # an object array holds, for example, polygons of unequal numbers of corners
         return [_as_in_a_file(inner) for inner in array] if array.dtype == object and array.ndim else array.tolist()
     return str(value) if isinstance(value, Path) else value
 
 
 def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """A description with nested tables put in, in whatever order; a key that two of them have is refused."""
+    """A description with nested tables put in, in any order; a key that occurs in two of them is refused."""
     together: dict[str, Any] = {}
     for change in changes:
         together = _together(together, change)
@@ -472,7 +475,7 @@ def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) 
 
 
 def _together(one: Mapping[Any, Any], other: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
-    """The keys of two nested tables; one that both have is refused by a `SceneError`."""
+    """The keys of two nested tables; a key that occurs in both raises a `SceneError`."""
     together = dict(one)
     for key, value in other.items():
         before, full_name = together.get(key), _full_name(name, key)
@@ -493,7 +496,7 @@ def _full_name(name: str, key: str | int) -> str:
 
 
 def _path(name: str, table: Mapping[Any, Any]) -> list[str | int]:
-    """Keys that a full name leads through, and numbers in lists; keys there already are whole, with their dots."""
+    """Keys and list indices that a full name consists of; existing keys may contain dots."""
     known = [key for key in table if f"{name}.".startswith(f"{key}.")]
     key = max(known, key=len, default=name.partition(".")[0])
     rest, path, inner = name[len(key) + 1 :], [key], table.get(key)
@@ -509,7 +512,7 @@ def _path(name: str, table: Mapping[Any, Any]) -> list[str | int]:
 
 
 def _merged(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
-    """A table with the keys of another one put in or, where they are None, taken out; entries of lists by number."""
+    """A table with the keys of another put in or, if they are None, removed; list entries are changed by index."""
     merged = dict(old)
     for key, value in new.items():
         before, full_name = merged.get(key), _full_name(name, key)

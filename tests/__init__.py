@@ -1,7 +1,7 @@
-"""Tests, laid out as the house is."""
+"""Tests, in folders that follow those of the package."""
 
 from hypothesis import settings
 
-# How long an example takes is the machine's affair: the first one may compile a kernel.
+# No deadline: run times depend on the machine, and the first example may compile a kernel.
 settings.register_profile("no deadline", deadline=None)
 settings.load_profile("no deadline")

@@ -1,4 +1,4 @@
-"""Cases that `make test-long` tries beside those of `make test`."""
+"""Cases of parametrised tests that only `make test-long` runs, not `make test`."""
 
 from typing import Any
 
@@ -6,5 +6,5 @@ import pytest
 
 
 def at_length(*cases: Any) -> list[Any]:
-    """Values of a parameter, or tuples of several parameters' values, that are tried where there are minutes."""
+    """Cases, each a value or a tuple of values, marked as long because they take minutes."""
     return [pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.long) for case in cases]

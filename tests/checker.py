@@ -5,4 +5,4 @@ from runpy import run_path
 
 SCRIPT = Path(__file__).parents[1] / "tools" / "check_limit.py"
 check = run_path(str(SCRIPT))["check"]
-"""``check(folder)``: whether the limit analysis that a folder holds proves itself."""
+"""``check(folder)``: whether the limit analysis stored in a folder passes this script's independent checks."""

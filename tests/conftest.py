@@ -1,4 +1,4 @@
-"""What every test finds as the one before found it."""
+"""State that is restored after every test."""
 
 import signal
 from collections.abc import Iterator
@@ -7,8 +7,8 @@ import pytest
 
 
 @pytest.fixture(autouse=True)
-def _signals_are_heard_as_before() -> Iterator[None]:
-    """Commands that are called in this process listen for Ctrl-C and SIGTERM, and end with it."""
+def _restore_signal_handlers() -> Iterator[None]:
+    """Restore the handlers of SIGINT and SIGTERM: commands called in this process install their own."""
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     yield
     for number, handler in before.items():

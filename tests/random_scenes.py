@@ -1,4 +1,4 @@
-"""Random scenes over all keys of a scene file, by a seed: most stand, and every run of one makes the same."""
+"""Random scenes with many keys of a scene file, reproducible from a seed; most of the walls stand."""
 
 import random
 from itertools import accumulate
@@ -12,7 +12,7 @@ SUPPORTS = ("base", "base", "base", "fixed-first-course", "corners", "pinned-cor
 
 
 class Draw:
-    """A wall in running bond, a few courses high, and the choices of one seed."""
+    """A wall in running bond, a few courses high, with the random choices of one seed."""
 
     def __init__(self, seed: int) -> None:
         self.random = random.Random(seed)
@@ -52,11 +52,11 @@ class Draw:
         course[self.random.choice(inside)] *= -1
 
     def near(self, size: float, spread: float = 2.0) -> float:
-        """A number of a size."""
+        """Random number within a factor `spread` of `size`, to four digits."""
         return float(f"{size * spread ** self.random.uniform(-1, 1):.4g}")
 
     def maybe(self, share: float) -> bool:
-        """True as often as said."""
+        """Return True with probability `share`."""
         return self.random.random() < share
 
     def centre(self) -> list[float]:
@@ -68,15 +68,15 @@ class Draw:
         return [x * self.width, (self.levels[row] + self.levels[row + 1]) / 2]
 
     def along_top(self) -> float:
-        """A place on the top, away from joints."""
+        """Position x on the top, away from joints."""
         return self.length * self.random.choice([0.0, 0.11, 0.37, 0.59, 0.93, 1.0])
 
     def direction(self) -> Any:
-        """Right, left, or a little up or down."""
+        """Right, left, or slightly inclined."""
         return self.random.choice(["right", "left", [1.0, 0.1], [-1.0, -0.2]])
 
     def load(self, kind: str, size: float) -> dict[str, Any]:
-        """A load of a kind, of a size in weights of a brick; a dead one does not push sideways much."""
+        """A load of a kind; `size` in weights of a brick, and forces have only a small horizontal part."""
         sideways = self.random.choice([0.0, 0.2, -0.2]) * self.near(size)
         down = -self.near(size)
         force = [round(self.brick * sideways, 6), round(self.brick * down, 6)]
@@ -117,7 +117,7 @@ class Draw:
         return joint
 
     def assignments(self) -> list[dict[str, Any]]:
-        """Entries that give some blocks and joints other materials."""
+        """Entries that assign other materials to some blocks and joints."""
         x, y = self.length * self.random.choice([0.4, 0.6]), self.height * self.random.choice([1.0, 2.0])
         entries: list[dict[str, Any]] = [
             {"block": "heavy", "box": [[-1.0, -1.0], [x, y]]},
@@ -166,7 +166,7 @@ class Draw:
 
 
 def random_scene(seed: int) -> dict[str, Any]:
-    """The tables of a scene file, drawn again where they are refused: a moment on a joint, a box that holds nothing."""
+    """Tables of a scene file; drawn again if refused, such as a moment applied on a joint or an empty box."""
     for again in range(100):
         scene = _drawn(seed + 1000 * again)
         try:

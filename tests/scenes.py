@@ -1,4 +1,4 @@
-"""Random scenes, as the tables of a scene file: walls that stand or fall, and tables that describe none."""
+"""Hypothesis strategies for random scenes, as tables of a scene file: valid walls and invalid tables."""
 
 import copy
 from pathlib import Path
@@ -17,7 +17,7 @@ kinds = st.sampled_from(["base", "base", "fixed-first-course", "corners", "pinne
 
 @st.composite
 def walls(draw: st.DrawFn) -> dict[str, Any]:
-    """Running bond of every kind that there is, loaded sideways or at a point that it has."""
+    """A wall in running bond of any kind, loaded laterally or at a point on its top."""
     half, courses = draw(st.integers(2, 8)), draw(st.integers(2, 5))
     friction = draw(st.one_of(st.just(0.0), st.floats(0.01, 3)))
     cohesion = draw(st.sampled_from([0.0, 0.0, 1e2, 1e4]))
@@ -63,7 +63,7 @@ def spoilt(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def small_walls(draw: st.DrawFn) -> dict[str, Any]:
-    """Walls of a few blocks for every model, of any size, shape and material: most stand, some cannot be."""
+    """Walls of a few blocks for every model, of any size, shape and material; most are valid, some are not."""
     size = draw(st.sampled_from([1.0, 1.0, 1.0, 1e-6, 1e-3, 1e3]))
     width, height = draw(
         st.sampled_from([(0.24, 0.06), (0.24, 0.12), (0.12, 0.12), (0.06, 0.24), (0.01, 0.5), (1, 0.02)])
@@ -115,7 +115,7 @@ _forces = st.one_of(
 
 @st.composite
 def joints(draw: st.DrawFn, side: float) -> dict[str, Any]:
-    """A joint with a stiffness, from frictionless to rough as a file, from dry to glued, plastic or brittle."""
+    """A joint with stiffness: frictionless to very rough, dry to glued, perfectly plastic or brittle."""
     friction = draw(st.one_of(st.floats(0.01, 3), st.sampled_from([0.0, 0.6, 0.6, 1e-9, 1e-6, 1e-3, 10.0, 1e6])))
     cohesion = draw(st.one_of(st.sampled_from([0.0, 0.0, 0.0]), _powers(-6, 7)))
     joint: dict[str, Any] = {"friction": friction, "cohesion": cohesion}
@@ -136,7 +136,7 @@ def joints(draw: st.DrawFn, side: float) -> dict[str, Any]:
 
 @st.composite
 def outlines(draw: st.DrawFn) -> list[list[tuple[float, float]]]:
-    """A pier of two or three convex blocks on their ground, its joints sloping, gaping or overlapping a little [mm]."""
+    """A pier of two or three convex blocks on the ground, with joints that slope, gape or overlap a little [mm]."""
     width, rise = draw(st.sampled_from([200.0, 1000.0])), draw(st.floats(20.0, 300.0))
     slopes = [0.0, *draw(st.lists(st.floats(-0.4, 0.4), min_size=2, max_size=3))]
     gaps = draw(st.lists(st.sampled_from([0.0, 0.0, 0.0, 1e-3, 0.01, 0.02, -0.01, -1.0, 1.0]), min_size=3, max_size=3))

@@ -1,4 +1,4 @@
-"""Who may import whom, and that the rooms stay apart."""
+"""Which package may import which, and absence of import cycles."""
 
 import ast
 import tomllib
@@ -33,25 +33,25 @@ MAY_IMPORT["runningbond.compare"] = MAY_IMPORT["runningbond.draws"] | {"runningb
 MAY_IMPORT["runningbond.studies"] = MAY_IMPORT["runningbond.compare"] | {"runningbond.compare"}
 MAY_IMPORT["runningbond.laboratory"] = MAY_IMPORT["runningbond.studies"] | {"runningbond.studies"}
 MAY_IMPORT["runningbond.commands"] = MAY_IMPORT["runningbond.laboratory"] | {"runningbond.laboratory"}
-"""Each room, and those that it may import: the ones that stand before it."""
+"""Each package, and the packages of lower layers that it may import."""
 
-NO_ROOM = {"runningbond.own_packages"}
-"""Modules that stand beside the rooms and know nothing of them; every room may import these."""
+STANDALONE = {"runningbond.own_packages"}
+"""Modules that every package may import and that import no package themselves."""
 
 HEAVY = {"gmsh", "pyvista", "vtk"}
-"""Slow to import and in need of system libraries; imported inside the functions that use them."""
+"""Libraries that are slow to import and need system libraries; imported only inside functions that use them."""
 
-SOURCES = [path for room in MAY_IMPORT for path in sorted((ROOT / room.replace(".", "/")).rglob("*.py"))]
+SOURCES = [path for package in MAY_IMPORT for path in sorted((ROOT / package.replace(".", "/")).rglob("*.py"))]
 
 
-def _room(module: str) -> str:
-    """The room that a module stands in: two names deep within the package, one elsewhere."""
+def _package(module: str) -> str:
+    """Package of a module: its first two names within `runningbond`, its first name elsewhere."""
     parts = module.split(".")
     return ".".join(parts[:2]) if parts[0] == "runningbond" else parts[0]
 
 
 def _imported(tree: ast.AST, module: str = "") -> set[str]:
-    """Modules that a tree imports, those named relative to `module` in full."""
+    """Full names of the modules that a syntax tree imports, relative ones resolved from `module`."""
     names: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -68,21 +68,21 @@ def _module(source: Path) -> str:
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_rooms_import_only_what_the_design_allows(source: Path) -> None:
+def test_packages_import_only_lower_packages(source: Path) -> None:
     module = _module(source)
-    foreign = {_room(name) for name in _imported(ast.parse(source.read_text()), module)}
-    ours = {name for name in foreign if name.split(".")[0] in {room.split(".")[0] for room in MAY_IMPORT}}
-    assert ours - {_room(module)} <= MAY_IMPORT[_room(module)] | NO_ROOM
+    foreign = {_package(name) for name in _imported(ast.parse(source.read_text()), module)}
+    ours = {name for name in foreign if name.split(".")[0] in {package.split(".")[0] for package in MAY_IMPORT}}
+    assert ours - {_package(module)} <= MAY_IMPORT[_package(module)] | STANDALONE
 
 
-@pytest.mark.parametrize("module", sorted(NO_ROOM))
-def test_what_every_room_may_import_imports_none(module: str) -> None:
+@pytest.mark.parametrize("module", sorted(STANDALONE))
+def test_standalone_modules_import_no_package(module: str) -> None:
     tree = ast.parse((ROOT / f"{module.replace('.', '/')}.py").read_text())
     assert not {name for name in _imported(tree, module) if name.split(".")[0] in {*MAY_IMPORT, "runningbond"}}
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_heavy_libraries_are_imported_where_they_are_used(source: Path) -> None:
+def test_heavy_libraries_are_imported_inside_functions(source: Path) -> None:
     outside_functions = {
         name.split(".")[0]
         for node in ast.parse(source.read_text()).body
@@ -92,16 +92,16 @@ def test_heavy_libraries_are_imported_where_they_are_used(source: Path) -> None:
     assert not outside_functions & HEAVY
 
 
-def test_there_is_no_cycle_between_rooms() -> None:
+def test_packages_have_no_import_cycle() -> None:
     order: list[str] = []
     while len(order) < len(MAY_IMPORT):
-        ready = [room for room, allowed in MAY_IMPORT.items() if room not in order and allowed <= set(order)]
+        ready = [name for name, allowed in MAY_IMPORT.items() if name not in order and allowed <= set(order)]
         assert ready, "the rooms left import each other"
         order += ready
 
 
-def test_there_is_no_cycle_between_modules() -> None:
-    """Imports at the top of modules, each module after all that it needs; imports inside functions come later."""
+def test_modules_have_no_import_cycle_at_load() -> None:
+    """Imports inside functions do not count, because they are executed only after all modules have been loaded."""
     modules = {_module(source).removesuffix(".__init__"): source for source in SOURCES}
     needs: dict[str, set[str]] = {}
     for name, source in modules.items():
@@ -116,13 +116,13 @@ def test_there_is_no_cycle_between_modules() -> None:
         done |= ready
 
 
-def test_comparisons_and_commands_are_free_of_late_cycles() -> None:
-    """No module of these rooms reaches itself, by imports inside functions either."""
-    rooms = {f"runningbond.{room}" for room in ("models", "campaigns", "compare", "commands")}
+def test_comparisons_and_commands_have_no_late_import_cycle() -> None:
+    """No module of these packages imports itself through others, not even by imports inside functions."""
+    packages = {f"runningbond.{package}" for package in ("models", "campaigns", "compare", "commands")}
     sources = {_module(path).removesuffix(".__init__"): path for path in SOURCES}
     needs = {}
     for name, source in sources.items():
-        if _room(name) in rooms:
+        if _package(name) in packages:
             package = name + ".__init__" if source.name == "__init__.py" else name
             needs[name] = {found for found in _imported(ast.parse(source.read_text()), package) if found in sources}
     for start in needs:
@@ -134,30 +134,30 @@ def test_comparisons_and_commands_are_free_of_late_cycles() -> None:
         assert start not in reached
 
 
-def test_names_of_models_stand_in_one_place() -> None:
-    """As words of their own in the source of campaigns, comparisons and commands; `homog` is also a room."""
-    for room in ("campaigns", "compare", "commands"):
-        for source in (ROOT / "runningbond" / room).rglob("*.py"):
+def test_model_names_are_not_hard_coded() -> None:
+    """No string constant in campaigns, compare and commands is a model's name; fingerprint.py names package homog."""
+    for package in ("campaigns", "compare", "commands"):
+        for source in (ROOT / "runningbond" / package).rglob("*.py"):
             if source.name == "fingerprint.py":
                 continue
             words = [node.value for node in ast.walk(ast.parse(source.read_text())) if isinstance(node, ast.Constant)]
             assert not set(MODELS) & {word for word in words if isinstance(word, str)}, source
 
 
-def test_the_tree_has_the_rooms_of_the_design_and_no_others() -> None:
+def test_tree_has_exactly_the_listed_packages() -> None:
     top = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests"}
-    assert top == {"runningbond", *(room for room in MAY_IMPORT if "." not in room)}
+    assert top == {"runningbond", *(package for package in MAY_IMPORT if "." not in package)}
     inside = {f"runningbond.{path.parent.name}" for path in (ROOT / "runningbond").glob("*/__init__.py")}
-    assert inside == {room for room in MAY_IMPORT if "." in room}
+    assert inside == {package for package in MAY_IMPORT if "." in package}
 
 
-def test_the_distribution_is_made_of_exactly_these_packages() -> None:
+def test_distribution_has_exactly_these_packages() -> None:
     with (ROOT / "pyproject.toml").open("rb") as file:
         packages = find_packages(str(ROOT), **tomllib.load(file)["tool"]["setuptools"]["packages"]["find"])
-    folders = {path.parent for room in MAY_IMPORT for path in (ROOT / room.replace(".", "/")).rglob("__init__.py")}
+    folders = {path.parent for name in MAY_IMPORT for path in (ROOT / name.replace(".", "/")).rglob("__init__.py")}
     assert set(packages) == {"runningbond", *(".".join(folder.relative_to(ROOT).parts) for folder in folders)}
 
 
-def test_what_can_change_a_number_is_in_the_fingerprint() -> None:
+def test_fingerprint_covers_all_computing_packages() -> None:
     after = ("pictures", "campaigns", "draws", "compare", "studies", "laboratory", "commands")
-    assert set(COMPUTING_ROOMS) == set(MAY_IMPORT) - {f"runningbond.{room}" for room in after}
+    assert set(COMPUTING_ROOMS) == set(MAY_IMPORT) - {f"runningbond.{package}" for package in after}

@@ -1,4 +1,4 @@
-"""Walls that tests are about, as the tables of a scene file."""
+"""Reference walls of the tests, as tables of a scene file."""
 
 import copy
 import json
@@ -44,7 +44,7 @@ def courses(pattern: list[list[float]], width: float = 0.4, height: float = 0.17
 
 
 def write_toml(tables: dict[str, Any], path: Path) -> Path:
-    """Write tables as a scene file; enough of TOML for them."""
+    """Write tables as a scene file, with as much of TOML as they need."""
     lines: list[str] = [f"{key} = {_value(value)}" for key, value in tables.items() if not isinstance(value, dict)]
     for name, table in tables.items():
         if isinstance(table, dict):

@@ -3,11 +3,11 @@
 
     python tools/check_limit.py DIR [DIR …]
 
-From the scene and the arrays in each folder, and none of the suite's code, it sums up weights, loads, joint forces,
-ties and reactions block by block, holds every joint point against Mohr and Coulomb, and joints that crush against the
-resultants of all tractions that they may carry, follows the mechanism, and works the multiplier out a second and a
-third time; of an interval of certified loads it does so at both ends. It prints each measure beside the most that it
-may be, and ends with 1 where one is larger.
+From the scene and the arrays in each folder, and without any code of the suite, the script checks equilibrium of
+weights, loads, joint forces, ties and reactions for each block; the Mohr-Coulomb criterion at every joint point, or for
+joints that crush, the domain of the resultants of all admissible tractions; and the kinematics of the mechanism. It
+computes the multiplier again, from the mechanism and for settlements from the support's work. For an interval of
+certified loads it does all this at both ends. It prints each relative error, and exits with 1 if one is above 1e-6.
 """
 
 import io
@@ -21,25 +21,25 @@ from typing import Any
 
 import numpy as np
 
-MOST = 1e-6
-"""Most that a measure may be, relative to the largest force, motion or multiplier."""
+LARGEST_ERROR = 1e-6
+"""Largest admissible error, relative to the largest force, motion or multiplier."""
 
-WIDEST = [(1500, 1e-6), (25_000, 1e-4), (math.inf, 1e-2)]
-"""Largest relative width of a bracket of the associated bounds, by fewer blocks than so many; each end is checked by
-itself."""
+BRACKET_WIDTHS = [(1500, 1e-6), (25_000, 1e-4), (math.inf, 1e-2)]
+"""Largest relative width of a bracket of the associated bounds, for walls with fewer blocks than the first number of
+each pair; each end is checked separately."""
 
-LARGE_THAT_CRUSHES = 200
-"""Blocks from which walls whose joints crush count as if they were of `WIDEST[0]`'s."""
+LARGE_CRUSHING = 200
+"""Number of blocks from which a wall whose joints crush may have the bracket width of `BRACKET_WIDTHS[1]`."""
 
 GAUSS = [(part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(6), (1, 0), strict=True)]
-"""Nodes and weights on [0, 1]."""
+"""Nodes and weights of 6-point Gauss quadrature on [0, 1]."""
 
 CONTACT = 1e-4
-"""Gap that counts as contact, in sizes (root of the area) of the smallest block."""
+"""Largest gap that counts as contact, relative to the square root of the smallest block's area."""
 
 
 def read(folder: Path) -> tuple[Any, dict[str, Any], dict[str, np.ndarray]]:
-    """Scene, record and arrays of a result folder; of the scene each part has its fields as attributes."""
+    """Read scene, record and arrays of a result folder; parts of the scene have their fields as attributes."""
     if not (folder / "outcome.json").is_file():
         raise SystemExit(f"{folder}: holds no outcome.json of a limit analysis")
     record = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
@@ -64,7 +64,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 class Wall:
-    """Blocks, joint points, ties and held motions of a scene, worked out from its file."""
+    """Blocks, joint points and held motions, computed from the scene in the file."""
 
     def __init__(self, scene: Any) -> None:
         self.scene, first = scene, scene.blocks.first
@@ -86,7 +86,7 @@ class Wall:
         self.held += [(scene.beam.block, self.centre[scene.beam.block], np.array([0.0, 1.0]), 0.0)] if late else []
 
     def _points(self) -> None:
-        """Two points a joint, at its ends or an inset from them, with the strength of half the joint each."""
+        """Two points per joint, at its ends or inset from them, each with the strength of half the joint."""
         joints, materials = self.scene.joints, [self.scene.joint_materials[k] for k in self.scene.material_of_joint]
         if any(material.law is not None for material in materials):
             sys.exit("a joint has a law of its own: not checked")
@@ -106,23 +106,23 @@ class Wall:
         self.tension = np.repeat([tensile_strength(material) for material in materials], 2) * area
 
     def on_blocks(self, block: Any, at: Any, force: Any) -> np.ndarray:
-        """Forces at points as forces and moments on all blocks about their centroids, ``(nb, 3)``."""
+        """Convert forces at points to forces and moments on all blocks about their centroids, ``(nb, 3)``."""
         block, at, force = np.atleast_1d(block), np.reshape(at, (-1, 2)), np.reshape(force, (-1, 2))
         total = np.zeros((self.n, 3))
         np.add.at(total, block, np.column_stack([force, cross(at - self.centre[block], force)]))
         return total
 
     def moved(self, motion: np.ndarray, block: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """Displacements of points of blocks."""
+        """Displacements of points on blocks under a motion, ``(n, 2)``."""
         arm, turn = at - self.centre[block], motion[block, 2]
         return np.asarray(motion[block, :2] + np.column_stack([-turn * arm[:, 1], turn * arm[:, 0]]))
 
     def holding(self, point: np.ndarray) -> list[int]:
-        """Movable blocks that hold or touch a point."""
+        """Movable blocks that contain or touch a point."""
         return [k for k in range(self.n) if not self.fixed[k] and holds(self.outlines[k], point, self.gap)]
 
     def load(self, action: Any) -> np.ndarray:
-        """A load of the file, as forces and moments on the blocks, ``(nb, 3)``."""
+        """Forces and moments on the blocks by a load of the file, ``(nb, 3)``."""
         kind, gravity = action.part, float(np.hypot(*self.scene.load.gravity))
         if kind in ("Lateral", "Tilt", "Body"):
             pull = np.array(action.acceleration) if kind == "Body" else gravity * np.array(action.direction)
@@ -143,10 +143,10 @@ class Wall:
             )
         if kind == "LineLoad":
             return self.line(np.array(action.start), np.array(action.end), np.array(action.force))
-        return np.zeros((self.n, 3))  # a settlement
+        return np.zeros((self.n, 3))  # for a settlement
 
     def line(self, start: np.ndarray, end: np.ndarray, force: np.ndarray) -> np.ndarray:
-        """A load per length: between two corners on it, it is on the block that it presses on."""
+        """Load per length: each part of the line, between corners or edges, loads the block that it presses on."""
         run, total = end - start, np.zeros((self.n, 3))
         length = float(np.hypot(*run))
         across = np.array([-run[1], run[0]]) / length
@@ -169,7 +169,7 @@ class Wall:
         return total
 
     def support_motion(self) -> np.ndarray:
-        """Motion of the supports at λ = 1, ``(nb, 3)``; zero of what stays."""
+        """Motion of the supports at λ = 1, ``(nb, 3)``; zero for all other blocks."""
         motion = np.zeros((self.n, 3))
         for load in self.scene.load.live:
             if load.part == "Settlement":
@@ -185,7 +185,7 @@ class Wall:
 
 def thicknesses(scene: Any) -> np.ndarray:
     """Thickness of each block; a beam and the ground are as thick as the thickest of the others."""
-    own = [getattr(each, "thickness", None) for each in scene.block_materials]  # of which older files know nothing
+    own = [getattr(each, "thickness", None) for each in scene.block_materials]  # absent in older files
     thickness = np.array([each or scene.thickness for each in own])[scene.material_of_block]
     others = ~scene.wall
     if scene.beam is not None:
@@ -203,7 +203,7 @@ def area_and_centre(outline: np.ndarray) -> tuple[float, np.ndarray]:
 
 
 def holds(outline: np.ndarray, point: np.ndarray, gap: float) -> bool:
-    """Whether a polygon holds a point, or has it within a gap of its outline."""
+    """Whether a polygon contains a point, or its outline is within a gap of the point."""
     return distance(outline, point) <= gap or crossings(outline, point) % 2 == 1
 
 
@@ -215,7 +215,7 @@ def distance(outline: np.ndarray, point: np.ndarray) -> float:
 
 
 def crossings(outline: np.ndarray, point: np.ndarray) -> int:
-    """Edges that a ray to the right of a point crosses."""
+    """Number of edges that a ray from a point to the right crosses."""
     a, b = outline, np.roll(outline, -1, axis=0)
     spans = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
     a, b = a[spans], b[spans]
@@ -223,7 +223,7 @@ def crossings(outline: np.ndarray, point: np.ndarray) -> int:
 
 
 def tensile_strength(material: Any) -> float:
-    """Tensile strength [Pa]: the one given, at most the apex c / tan φ."""
+    """Tensile strength [Pa]: the given one, but at most the apex c / tan φ, which is also the default."""
     apex = float(material.cohesion / material.friction) if material.friction else math.inf
     if material.tensile_strength is None:
         return apex if material.friction else 0.0
@@ -231,11 +231,12 @@ def tensile_strength(material: Any) -> float:
 
 
 class Traction:
-    """Tractions σ and τ that a joint which crushes may carry at a point, times its area: cone, cut-off and cap.
+    """Admissible tractions σ and τ at a point of a joint that crushes, times its area: cone, cut-off and cap.
 
-    The cap is an ellipse under pressure and goes on straight in tension.
+    The cap is an ellipse under compression, and continues in tension with constant shear strength.
 
-    A joint carries the resultants of all fields of them: the normal force at each end, and the shear force.
+    The joint carries the resultants of all admissible traction fields: the normal force at each end, and the shear
+    force.
     """
 
     def __init__(self, material: Any, area: float) -> None:
@@ -255,13 +256,13 @@ class Traction:
         self.ratios = np.concatenate([[0.0, self.slope], graded, on_arc[:, 0] / (on_arc[:, 1] * (self.shear or 1.0))])
 
     def holds(self, sigma: np.ndarray, tau: np.ndarray) -> np.ndarray:
-        """Which tractions, τ ≥ 0, may be."""
+        """Whether tractions with τ ≥ 0 are admissible."""
         near = 1e-9 * self.cap
         inside = (sigma <= self.tension + near) & (tau >= -near) & (tau <= self.cohesion - self.slope * sigma + near)
         return np.asarray(inside & (np.hypot(np.minimum(sigma, 0.0), math.sqrt(self.shear) * tau) <= self.cap + near))
 
     def best(self, opening: np.ndarray, slip: float) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions that spend most where a joint opens by so much and slips by so much, not less than nothing."""
+        """Tractions with the largest dissipation for given openings and a slip ≥ 0."""
         radius = np.hypot(opening, slip / math.sqrt(self.shear)) if self.shear else np.abs(opening)
         radius = np.where(radius > 0, radius, 1.0)
         arc = self.cap * opening / radius, self.cap * slip / (self.shear * radius) if self.shear else 0 * opening
@@ -274,7 +275,7 @@ class Traction:
         return sigma[which], tau[which]
 
     def resultant(self, jumps: np.ndarray) -> np.ndarray:
-        """Forces at both ends and shear force that spend most on openings of the ends and a slip ``(3,)``."""
+        """Forces at both ends and shear force with the largest dissipation for two openings and a slip ``(3,)``."""
         first, span, slip = jumps[0], jumps[1] - jumps[0], jumps[2]
         cuts = (self.ratios * abs(slip) - first) / span if abs(span) > 1e-12 * abs(jumps).max() else np.zeros(0)
         cuts = np.unique(np.concatenate([[0.0, 1.0], np.linspace(0, 1, 9), cuts[(cuts > 0) & (cuts < 1)]]))
@@ -284,7 +285,7 @@ class Traction:
         return np.array([weight @ (sigma * (1 - at)), weight @ (sigma * at), math.copysign(1.0, slip) * (weight @ tau)])
 
     def beyond(self, forces: np.ndarray, near: float) -> float:
-        """Distance of forces ``(3,)`` from the nearest resultant (Wolfe 1976), as nearly as asked for."""
+        """Distance of forces ``(3,)`` from the nearest admissible resultant (Wolfe 1976), with tolerance `near`."""
         points = [self.resultant(-forces) - forces]
         share, here = np.ones(1), points[0]
         for _ in range(200):
@@ -308,16 +309,16 @@ class Traction:
 
 
 def nearest(points: np.ndarray) -> np.ndarray:
-    """Shares, adding up to 1, of the mix of points ``(k, 3)`` that is nearest to zero; they may be negative."""
+    """Coefficients, with sum 1, of the affine combination of points ``(k, 3)`` nearest to zero; may be negative."""
     scaled, one = points / (np.abs(points).max() or 1.0), np.ones((len(points), 1))
     system = np.block([[scaled @ scaled.T, one], [one.T, np.zeros((1, 1))]])
     return np.asarray(np.linalg.lstsq(system, np.append(0 * one[:, 0], 1.0), rcond=1e-15)[0][:-1])
 
 
 class Result:
-    """A collapse of a scene, with the forces and motions that belong to it, or of the `far` end of its interval.
+    """A collapse of a scene, with its forces and motion; `far` takes those of the other end of its interval.
 
-    Of an interrupted analysis the forces are those of the lower bound.
+    For an interrupted analysis the forces are those of the lower bound.
     """
 
     def __init__(self, scene: Any, record: dict[str, Any], arrays: dict[str, np.ndarray], far: bool = False) -> None:
@@ -350,13 +351,13 @@ class Result:
         self._follow()
 
     def _nothing(self) -> float:
-        """Force that counts as none of a wall without weight, which may bear nothing at all: rounding is all it has."""
+        """Force that counts as zero in a wall without weight, which may carry no load at all, only rounding errors."""
         caps = [traction.cap for traction in self.crushing.values()]
         strengths = [*self.wall.tension, *self.wall.cohesion, *caps, *self.scene.ties.yield_force]
-        return MOST * max(np.abs(self.live).max(), *strengths)
+        return LARGEST_ERROR * max(np.abs(self.live).max(), *strengths)
 
     def _inner(self) -> np.ndarray:
-        """What joints, ties and pins do to each block ``(nb, 3)``; a joint pulls its blocks together by its force."""
+        """Forces of joints, ties and pins on each block ``(nb, 3)``; positive joint forces pull the blocks together."""
         wall, ties = self.wall, self.scene.ties
         joint = self.normal[:, None] * wall.normal + self.tangential[:, None] * wall.tangent
         inner = wall.on_blocks(wall.pair[:, 0], wall.at, joint) - wall.on_blocks(wall.pair[:, 1], wall.at, joint)
@@ -370,7 +371,7 @@ class Result:
         return inner
 
     def _follow(self) -> None:
-        """Jumps of the joint points and elongations of the ties in the mechanism."""
+        """Compute jumps of the joint points and elongations of the ties in the mechanism."""
         wall, ties, motion = self.wall, self.scene.ties, self.motion
         first, second = (wall.moved(motion, side, wall.at) for side in wall.pair.T)
         self.opening = ((second - first) * wall.normal).sum(axis=1)
@@ -385,7 +386,7 @@ class Result:
         self.driven = float((motion * self.support).sum() / (self.support**2).sum()) if self.settles else 0.0
 
     def forces(self) -> dict[str, float]:
-        """Balance and strength."""
+        """Errors in equilibrium and strength, relative to the largest force."""
         wall, free = self.wall, ~self.wall.fixed
         given = self.dead if self.settles else self.dead + self.multiplier * self.live
         unbalanced = np.abs((self.inner + given)[free])
@@ -403,12 +404,12 @@ class Result:
         for j, traction in self.crushing.items():
             of_joint = np.array([*self.normal[2 * j : 2 * j + 2], self.tangential[2 * j : 2 * j + 2].sum()])
             found["forces beyond crushing"] = max(
-                found.get("forces beyond crushing", 0.0), traction.beyond(of_joint, MOST / 10 * self.largest)
+                found.get("forces beyond crushing", 0.0), traction.beyond(of_joint, LARGEST_ERROR / 10 * self.largest)
             )
         return {name: value / self.largest for name, value in found.items()}
 
     def mechanism(self) -> dict[str, float]:
-        """What moves that must not, and what runs into each other."""
+        """Errors in supports, held motions and the flow rule of the mechanism, relative to its fastest corner."""
         wall, motion = self.wall, self.motion
         held = [
             wall.moved(motion, np.array([block]), at[None])[0] @ direction + turn * motion[block, 2]
@@ -425,7 +426,7 @@ class Result:
         return {name: value / self.fastest for name, value in found.items()}
 
     def power(self) -> dict[str, float]:
-        """The multiplier from the mechanism: in `limit` by what the joints dissipate, else by the forces."""
+        """Errors in the multiplier from the mechanism's power: of dissipation for `limit`, otherwise of the forces."""
         free, ties = ~self.wall.fixed, self.scene.ties
         by_dead, by_live = (float((load * self.motion)[free].sum()) for load in (self.dead, self.live))
         if self.settles:
@@ -438,16 +439,16 @@ class Result:
             spent += ties.yield_force @ self.longer.clip(min=0.0)
         else:
             spent = self.normal @ self.opening + self.tangential @ self.slip + self.pull @ self.longer
-        large = WIDEST[0][0] * (bool(self.crushing) and free.sum() >= LARGE_THAT_CRUSHES)
-        widest = next(width for blocks, width in WIDEST if max(free.sum(), large) < blocks)
+        large = BRACKET_WIDTHS[0][0] * (bool(self.crushing) and free.sum() >= LARGE_CRUSHING)
+        widest = next(width for blocks, width in BRACKET_WIDTHS if max(free.sum(), large) < blocks)
         lower, upper, here = self.record["lower"], self.record["upper"], self.multiplier
         proved = here if not self.dilatant else lower if self.settles else upper
         found = {
             "multiplier of the mechanism": abs((spent - by_dead) / by_live - proved),
             "multiplier outside its bracket": max(lower - here, here - upper, 0.0),
-            "width of the bracket": (upper - lower) * MOST / widest if self.decided and self.dilatant else 0.0,
+            "width of the bracket": (upper - lower) * LARGEST_ERROR / widest if self.decided and self.dilatant else 0.0,
         }
-        if not self.dilatant:  # the load that is certified is an end of the interval
+        if not self.dilatant:  # the multiplier is the certified load, an end of the interval
             found["nearer end of the interval"] = abs((upper if self.settles else lower) - self.record["multiplier"])
         if self.settles:
             moving = np.abs(self.support).max(axis=1) > 0
@@ -459,34 +460,34 @@ class Result:
         return {name: value / unit for name, value in found.items()} | {"a load against the motion": float(backwards)}
 
     def friction(self) -> dict[str, float]:
-        """Without dilatancy: that the forces are those which the mechanism goes with."""
-        opens, slides = self.opening > MOST * self.fastest, np.abs(self.slip) > MOST * self.fastest
+        """Errors in complementarity of forces and mechanism, without dilatancy."""
+        opens, slides = self.opening > LARGEST_ERROR * self.fastest, np.abs(self.slip) > LARGEST_ERROR * self.fastest
         most = np.sign(self.slip) * (self.shear + self.wall.friction * self.pressure)
         short = self.scene.ties.yield_force - self.pull
         found = {
             "pressure where it opens": np.abs(self.pressure[opens]),
             "friction that does not oppose slip at its limit": np.abs(self.tangential - most)[slides],
-            "ties that lengthen below their yield": short[self.longer > MOST * self.fastest],
-            "ties that pull while they shorten": self.pull[self.longer < -MOST * self.fastest],
+            "ties that lengthen below their yield": short[self.longer > LARGEST_ERROR * self.fastest],
+            "ties that pull while they shorten": self.pull[self.longer < -LARGEST_ERROR * self.fastest],
         }
         return {name: value.max(initial=0.0) / self.largest for name, value in found.items()}
 
     def measures(self) -> dict[str, float]:
-        """Everything that is zero for an exact answer."""
-        found = {"joints off the outlines of their blocks": off_outlines(self.wall) * MOST}
+        """All errors; zero for an exact answer."""
+        found = {"joints off the outlines of their blocks": off_outlines(self.wall) * LARGEST_ERROR}
         found |= self.forces() | self.mechanism() | self.power()
         return found if self.dilatant else found | self.friction()
 
 
 def off_outlines(wall: Wall) -> float:
-    """Largest distance of an end of a joint from the outlines of its blocks, in contact gaps."""
+    """Largest distance of a joint's end from the outlines of its blocks, relative to twice the contact gap."""
     joints = wall.scene.joints
     pairs = zip(np.repeat(joints.block, 2, axis=0), joints.ends.reshape(-1, 2), strict=True)
     return max((distance(wall.outlines[k], at) for pair, at in pairs for k in pair), default=0.0) / (2 * wall.gap)
 
 
 def check(folder: Path) -> bool:
-    """Check a folder, print what was found, and say whether all is well."""
+    """Check a folder and print the errors; returns whether all are small."""
     scene, record, arrays = read(folder)
     print(f"{folder}: {record['model']}, {record['status']}, λ = {record['multiplier']}")
     interrupted = record["model"] == "limit" and record["lower"] is not None and len(arrays["force"]) > 0
@@ -498,8 +499,8 @@ def check(folder: Path) -> bool:
         result = Result(scene, record, arrays, far)
         print(f"  at {result.multiplier}")
         for name, value in result.measures().items():
-            right &= bool(value <= MOST)
-            print(f"  {value:9.2e}  {'' if value <= MOST else 'WRONG: '}{name}")
+            right &= bool(value <= LARGEST_ERROR)
+            print(f"  {value:9.2e}  {'' if value <= LARGEST_ERROR else 'WRONG: '}{name}")
     return right
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Count the house: lines a room, module cycles, untyped geometry, and files that know a law, a load or a model.
+"""Measure the source tree: lines per room, import cycles, untyped geometry, files that name a law, load or model.
 
-``python tools/count_lines.py`` counts this tree, ``--root FOLDER`` another one, also one from before the package
-``runningbond`` was made. Only the standard library is needed.
+``python tools/count_lines.py`` counts this tree, ``--root FOLDER`` another one, also one that is older than the package
+``runningbond``. Only the standard library is needed.
 """
 
 import argparse
@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 OUTSIDE = {"tests", "benchmarks", "examples", "tools", "docs", "build"}
-"""Folders at the top that are not of the package."""
+"""Top-level folders that are not part of the package."""
 
 DEMONSTRATION = {"models", "campaigns", "draws", "compare", "studies", "commands"}
-"""Rooms that were all one, ``compare``, before the package was made, and draws, which came out of that later."""
+"""Rooms that were one room ``compare`` before the package was made; draws was split off later."""
 
 LOADS = re.compile(r"\bPointLoad\b")
 LAWS = re.compile(r"\b(SOFTENING|COULOMB|softening_\w+|coulomb_(kernel|constants)|fracture_energy_1)\b")
@@ -30,7 +30,7 @@ def sources(root: Path) -> list[Path]:
 
 
 def room(root: Path, file: Path) -> str:
-    """The room that a file stands in: the folder two names deep in ``runningbond``, one elsewhere."""
+    """Room of a file: the folder below ``runningbond``, or the top-level folder elsewhere."""
     parts = file.relative_to(root).parts
     if parts[0] != "runningbond":
         return parts[0].removesuffix(".py")
@@ -43,17 +43,17 @@ def text(file: Path) -> str:
 
 
 def lines(files: list[Path]) -> int:
-    """Lines of files, blank ones and documentation among them."""
+    """Number of lines in files, with blank lines and documentation."""
     return sum(len(text(file).splitlines()) for file in files)
 
 
 def module(root: Path, file: Path) -> str:
-    """Name by which a file is imported."""
+    """Import name of a file."""
     return ".".join(file.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
 
 
 def needs(root: Path, file: Path, modules: set[str]) -> set[str]:
-    """Modules that one imports as soon as it is imported itself, without those of its functions."""
+    """Modules that a file imports when it is imported itself, without imports inside functions."""
     package = module(root, file).split(".") if file.name == "__init__.py" else module(root, file).split(".")[:-1]
     imported: set[str] = set()
     for node in ast.parse(text(file)).body:
@@ -90,13 +90,13 @@ def cycles(graph: dict[str, set[str]]) -> list[list[str]]:
 
 
 def names_a_model(content: str) -> bool:
-    """Whether a model's name stands in a source file as a string of its own."""
+    """Whether a source file has a model's name as a string."""
     strings = {node.value for node in ast.walk(ast.parse(content)) if isinstance(node, ast.Constant)}
     return bool(MODELS & {string for string in strings if isinstance(string, str)})
 
 
 def report(root: Path) -> list[tuple[str, object]]:
-    """What is counted, row by row."""
+    """Rows of the table: what is counted, and the count."""
     files = sources(root)
     by_room: dict[str, list[Path]] = {}
     for file in files:
@@ -125,7 +125,7 @@ def report(root: Path) -> list[tuple[str, object]]:
 
 
 def main() -> None:
-    """Print the count as a table in Markdown."""
+    """Print the counts as a Markdown table."""
     parser = argparse.ArgumentParser(description="Count the house.")
     parser.add_argument("--root", type=Path, default=Path(__file__).parent.parent, help="the tree to count")
     print("| what | count |\n|---|---|")

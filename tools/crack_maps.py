@@ -1,4 +1,4 @@
-"""Draw the cracks of mortared walls at the end of their path, as `fem-small` sees them: docs/laboratory-j4d-j7d.png."""
+"""Draw the cracks of mortared walls at the end of their path by `fem-small`: docs/laboratory-j4d-j7d.png."""
 
 import sys
 from pathlib import Path
@@ -26,18 +26,19 @@ KINDS = (
     ("opened by 0.1 mm", 1e-4, STATE_COLOURS[JointState.OPEN], "solid"),
     ("crushed", 9e-5, CRUSHED, "solid"),
 )
-"""What is drawn of a joint element's points, the last above the others; crushed is beyond the strength."""
+"""Label, threshold, colour and dashes of each kind of crack, the last drawn on top. A joint element is drawn if one of
+its points exceeds the threshold [m]; crushed means compressed beyond the strength."""
 
 
 class LastLook:
-    """The last state that a run was seen in."""
+    """Observer that keeps the last state of a run."""
 
     def __init__(self) -> None:
         self.jumps, self.motion = np.zeros((3, 0)), np.zeros(0)
         self.wall: object = None
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Look at a run."""
+        """Store jumps, motion and wall of a state."""
         if not run.led:
             return
         opening, slip, *_ = run.at_joints(state)
@@ -46,7 +47,7 @@ class LastLook:
 
 
 def draw(axes: Axes, seen: LastLook) -> None:
-    """Deformed triangles, and the joint elements that slipped, opened or were crushed."""
+    """Draw deformed triangles, and the joint elements that slipped, opened or were crushed."""
     wall = seen.wall
     assert isinstance(wall, ModalWall)
     at: Array = wall.mesh.points + SCALE * wall.displacement(seen.motion)
@@ -64,7 +65,7 @@ def draw(axes: Axes, seen: LastLook) -> None:
 
 
 def main(path: Path, names: list[str]) -> None:
-    """Draw some walls side by side."""
+    """Draw walls side by side, with their curves."""
     walls = shipped_walls()
     figure = Figure(figsize=(3.6 * (len(names) + 1), 3.9), layout="constrained")
     *maps, curves = figure.subplots(1, len(names) + 1)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Print the oldest version of everything that ``pyproject.toml`` asks for, as constraints of pip.
+"""Print the oldest version of every requirement in ``pyproject.toml``, as constraints for pip.
 
-``make test-oldest`` installs these, and runs the tests with them. Only the standard library is needed.
+``make test-oldest`` installs these versions and runs the tests with them. Only the standard library is needed.
 """
 
 import re
@@ -12,11 +12,11 @@ PROJECT = Path(__file__).parents[1] / "pyproject.toml"
 REQUIREMENT = re.compile(r"(?P<name>[\w-]+)(\[[\w,]+\])?>=(?P<version>[\d.]+)")
 
 TESTS = ("cluster", "tables", "develop")
-"""Optional requirements that the tests have."""
+"""Groups of optional requirements that the tests need."""
 
 
 def constraints(project: Path = PROJECT) -> list[str]:
-    """A line ``name==version`` for each requirement with a lowest version, of the package and of its tests."""
+    """Lines ``name==version`` for each requirement of the package and its tests that has a lower bound."""
     table = tomllib.loads(project.read_text(encoding="utf-8"))["project"]
     requirements = [*table["dependencies"], *(each for key in TESTS for each in table["optional-dependencies"][key])]
     found = filter(None, map(REQUIREMENT.match, requirements))

@@ -1,31 +1,31 @@
 """Cost of a time step beside Akantu's, on the same mesh of the same wall, in one run.
 
-Needs Akantu: ``pip install -e '.[peers]'``. Its wheels are for Linux on x86-64 and CPython 3.11 and 3.12. Without it
-there is nothing to run, and the exit code is 2.
+Needs Akantu: ``pip install -e '.[peers]'``. Its wheels are for Linux on x86-64 and CPython 3.11 and 3.12. Without
+Akantu the exit code is 2.
 
-Alike: nodes, triangles and joint elements, numbered alike; plane stress; two points a joint element; elastic joints
-with dry Coulomb friction, of the same stiffness and friction; weight, and a horizontal load of 0.2 of it; explicit
-central differences, all freedoms, double precision, one thread. The first table shows that the two programs move the
-same wall: there the suite takes Akantu's masses and joint points too, and neither has damping. Most of what is left
-comes of friction, as a run with next to none in `WALL` shows.
+The same in both programs: nodes, triangles and joint elements, and their numbers; plane stress; two points per joint
+element; elastic joints with dry Coulomb friction, of the same stiffness and friction; weight, and a horizontal load of
+0.2 of it; explicit central differences, all degrees of freedom, double precision, one thread. The first table shows
+that the two programs move the same wall: for it the suite also has Akantu's masses and joint points, and neither has
+damping. Most of the remaining difference is due to friction, as a run with almost no friction in `WALL` shows.
 
-Not alike in the second table:
+Different in the second table:
 
-- Law. Akantu's ``cohesive_linear_friction`` needs a tensile strength, here 1 Pa over 2 µm, and remembers how far a
-  joint has slipped, but not in which direction. Where a joint under pressure has not slipped it gives NaN: nodes
-  start some 1e-12 m off.
-- Joint points. Akantu's are Gauss points, ours the ends of the elements.
-- Masses. Akantu lumps them to the nodes; ours are consistent, in modes of the blocks.
-- Damping. Akantu has none here. Ours has what the model ``fem`` has, on unbalanced forces, joints and modes, and
-  keeps account of the work that it takes.
-- Length of the step. Akantu takes the one that is stable without damping, by the suite's bound on its masses; its own
-  looks at the blocks only. Ours is shorter for damping and consistent masses, and longer for mass scaling, which the
-  suite has for stiff blocks (1000 GPa here, as in the paper) and Akantu has not. Scaling changes nothing in the cost
-  of a step but how far it goes: hence the last two columns, for a millisecond of motion.
+- Law. Akantu's ``cohesive_linear_friction`` needs a tensile strength, here 1 Pa over 2 µm, and stores how far a joint
+  has slipped, but not in which direction. It returns NaN for a joint under pressure that has not slipped; therefore
+  nodes start with offsets of about 1e-12 m.
+- Joint points. Akantu has Gauss points, the suite the ends of the elements.
+- Masses. Akantu lumps them to the nodes; the suite has consistent masses, in modes of the blocks.
+- Damping. Akantu has none here. The suite has that of the model ``fem``, on unbalanced forces, joints and modes, and
+  keeps an account of the dissipated work.
+- Time step. Akantu has the stable step without damping, by the suite's bound for Akantu's masses; its own bound
+  includes the blocks only. The suite's step is shorter for damping and consistent masses, and longer for mass scaling,
+  which the suite has for stiff blocks (1000 GPa here, as in the paper) and Akantu does not have. Scaling changes the
+  length of a step, but not its cost: hence the last two columns, for a millisecond of motion.
 - Machine code. Akantu's wheel is for any x86-64 processor, the suite's kernels are compiled for this one. Akantu is
-  called from Python once a step, and spends some ten microseconds on it however small the wall.
+  called from Python once per step, which costs about ten microseconds for a wall of any size.
 
-Times are of the processor, of several runs of each program by turns; ratios are of medians.
+Times are processor times of several runs of each program in turn; ratios are of medians.
 """
 
 import os
@@ -57,15 +57,15 @@ from runningbond.scene import Array, Indices, Scene, scene_from_dict
 RUNS = 7
 BLOCKS = (300, 1230, 5000)
 STEPS = 1000
-"""Steps after which motions are compared, and that ours take before they are timed."""
+"""Steps after which motions are compared, and steps of the suite before it is timed."""
 
 WORK = 3_000_000
-"""Steps times elements of one timed run of Akantu; ours are `FASTER` times as long."""
+"""Steps times elements of one timed run of Akantu; those of the suite are `FASTER` times as long."""
 
 FASTER = 10
 
 LOAD = 0.2
-"""Horizontal load, in weights."""
+"""Horizontal load, relative to the weight."""
 
 WALL = {
     "block": {"density": 1800.0, "young": 1e12, "poisson": 0.0},
@@ -97,7 +97,7 @@ material cohesive_linear_friction [
 
 
 def panel(blocks: int) -> Scene:
-    """A square panel of about so many blocks of 240 × 60 mm."""
+    """A square panel with about this number of blocks of 240 × 60 mm."""
     courses = max(2, round((blocks * 4) ** 0.5))
     along = max(1, round(blocks / courses))
     wall = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12}
@@ -105,12 +105,12 @@ def panel(blocks: int) -> Scene:
 
 
 def wall_triangles(wall: ModalWall) -> Indices:
-    """Triangles of the blocks that move, ``(nt, 3)``; the ground's are in neither program."""
+    """Triangles of the blocks that move, ``(nt, 3)``; neither program includes those of the ground."""
     return wall.mesh.triangles[~wall.scene.fixed[wall.mesh.triangle_block]]
 
 
 class AkantuWall:
-    """A wall's mesh as a model of Akantu's, at rest but for a little noise.
+    """A wall's mesh as a model of Akantu, at rest except for a little noise.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class AkantuWall:
         access.makeReady()
 
         self._model = akantu.SolidMechanicsModelCohesive(self._mesh)
-        # Akantu would put joints between all triangles: it is told to do so left of the wall only.
+        # Akantu would insert joints between all triangles; the limit restricts this to a region left of the wall.
         left = float(nodes[:, 0].min())
         self._model.getElementInserter().setLimit(akantu._x, left - 2.0, left - 1.0)
         self._model.initFull(_analysis_method=akantu._explicit_lumped_mass, _is_extrinsic=False)
@@ -157,19 +157,19 @@ class AkantuWall:
         return np.array(self._model.getDisplacement())
 
     def advance(self, steps: int) -> None:
-        """Take steps."""
+        """Take a number of time steps."""
         for _ in range(steps):
             self._model.solveStep()
 
 
 def acceleration(scene: Scene) -> Array:
-    """Weight and horizontal load, per mass, ``(2,)`` [m/s²]."""
+    """Weight and horizontal load per unit of mass, ``(2,)`` [m/s²]."""
     gravity = np.array(scene.load.gravity)
     return np.array([gravity[0] + LOAD * np.linalg.norm(gravity), gravity[1]])
 
 
 def read_materials(akantu: Any, scene: Scene) -> None:
-    """Give Akantu a scene's materials; all its models take them from there."""
+    """Pass a scene's materials to Akantu, for all its models."""
     joint = scene.joint_materials[0]
     text = MATERIALS.format(block=scene.block, joint=joint, stiffness=joint_stiffness(joint))
     with tempfile.TemporaryDirectory() as folder:
@@ -193,17 +193,17 @@ def as_in_akantu(scene: Scene) -> ModalWall:
 
 
 def free_run(wall: ModalWall) -> Run:
-    """A wall without damping, its masses as they are."""
+    """A run of a wall without damping and without mass scaling."""
     return Run(system_of(wall, damping=0.0, mass_scaling=False), local=0.0, viscous=0.0)
 
 
 def likeness(theirs: AkantuWall, wall: ModalWall, run: Run) -> str:
-    """Columns of the first table, after a number of steps from rest: what joints do, and how far programs differ."""
+    """Columns of the first table, after `STEPS` steps from rest: states of joints, and difference of the programs."""
     state = State.at_rest(run.system)
     run.hold(state, LOAD, STEPS)
-    theirs.advance(STEPS + 1)  # its accelerations start from zero, so that its first step goes nowhere
+    theirs.advance(STEPS + 1)  # its accelerations start from zero, so its first step has no motion
     ours = wall.displacement(state.motion)
-    # Blocks that the support's push has not reached fall freely, in any program: that is no likeness.
+    # Blocks that the support's reaction has not reached fall freely in any program: this motion is subtracted.
     fall = run.dt**2 * STEPS * (STEPS + 1) / 2 * acceleration(wall.scene)
     moving = ~wall.scene.fixed[wall.mesh.block]
     departure = np.linalg.norm(ours[moving] - fall)
@@ -217,7 +217,7 @@ def likeness(theirs: AkantuWall, wall: ModalWall, run: Run) -> str:
 
 
 def seconds_by_turns(calls: list[Callable[[], None]]) -> list[list[float]]:
-    """Processor times of a few runs of each call."""
+    """Processor times of `RUNS` runs of each call, in turn."""
     times: list[list[float]] = [[] for _ in calls]
     for _ in range(RUNS):
         for call, found in zip(calls, times, strict=True):
@@ -265,7 +265,7 @@ def compare_steps(akantu: Any, scene: Scene) -> tuple[str, list[str]]:
 
 
 def main() -> int:
-    """Print both tables; 2 where there is no Akantu."""
+    """Print both tables; returns the exit code, 2 without Akantu."""
     try:
         import akantu
     except ImportError as error:

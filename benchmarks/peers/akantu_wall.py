@@ -1,10 +1,10 @@
 """Akantu: triangles and cohesive joint elements with friction, by explicit central differences.
 
-What a step costs, and how alike the two programs are, is the business of ``akantu_step.py``. Here the question is what
-a load would cost. With stiff blocks (1000 GPa, as in the paper) a stable step is a microsecond; the suite scales
-masses, and steps are longer by an order. So no bracket is looked for, which would take from five minutes to hours: what
-is measured is the time that a wall is watched between two looks, and the same of `fem`, in one process. A load takes
-eight such and more, from rest to rest.
+The cost of a step, and the difference of the two programs, are measured by ``akantu_step.py``; this module measures
+the cost of a load. With stiff blocks (1000 GPa, as in the paper) the stable step is a microsecond; the suite scales
+masses, and its steps are longer by an order of magnitude. No bracket is computed, because that would take from five
+minutes to hours. Instead the cost of the motion between two looks (`load_steps`) is measured, and the same for `fem`,
+in one process. A load takes at least eight such intervals, from rest to rest.
 """
 
 import time
@@ -23,7 +23,7 @@ from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.scene import Scene
 
 SHARE = 10
-"""Part of a look that is run: its cost is that of its steps."""
+"""Akantu runs 1 / `SHARE` of the time between two looks; the measured cost is multiplied by `SHARE`."""
 
 PEER = Peer(
     name="Akantu",
@@ -37,7 +37,7 @@ PEER = Peer(
 
 
 def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
-    """No bracket, but what it would take."""
+    """Measure the cost of motion between two looks; no bracket is computed."""
     import akantu
 
     read_materials(akantu, scene)

@@ -1,8 +1,8 @@
 """Box2D: rigid polygons in the plane by sequential impulses; the engine of many games.
 
-It lets shapes overlap by 5 mm and gives them a skin of 10 mm, both compiled in, and asks for bodies of 0.1 to 10 m:
-lengths and gravity are multiplied, so that times are as they were and the skin is a smaller part of the block.
-Friction of a pair is the geometric mean of the shapes'.
+Box2D lets shapes overlap by 5 mm and gives them a skin of 10 mm, both compiled in, and recommends bodies of 0.1 to
+10 m. Lengths and gravity are scaled by the same factor: times are unchanged, and the skin is a smaller part of a block.
+The friction of a pair is the geometric mean of the frictions of the shapes.
 """
 
 from typing import Any
@@ -15,19 +15,19 @@ STEP = 5e-4
 """Time step [s]."""
 
 ITERATIONS = 100
-"""Of velocities; 30 of positions."""
+"""Velocity iterations per step; there are 30 position iterations."""
 
 SIZE = 5.0
-"""Length of a metre."""
+"""Scale of lengths: units of Box2D per metre."""
 
 
 class Box2DWall:
-    """A wall in a world of Box2D's, without sleep.
+    """A wall in a world of Box2D, without sleeping bodies.
 
     Parameters
     ----------
     world, bodies
-        Box2D's.
+        World of Box2D and its bodies.
     gravity
         Acceleration of gravity [m/s²].
     step
@@ -39,7 +39,7 @@ class Box2DWall:
 
     @classmethod
     def of(cls, scene: Scene, step: float = STEP) -> "Box2DWall":
-        """The wall of a scene, as it was built."""
+        """The wall of a scene, undeformed."""
         import Box2D
 
         world, bodies = Box2D.b2World(), []
@@ -52,7 +52,7 @@ class Box2DWall:
         return cls(world, bodies, float(np.hypot(*scene.load.gravity)), step)
 
     def hold(self, multiplier: float, seconds: float) -> None:
-        """Bring the wall forward."""
+        """Integrate the motion under a load over some seconds."""
         self._world.gravity = (SIZE * multiplier * self._gravity, -SIZE * self._gravity)
         for _ in range(round(seconds / self._step)):
             self._world.Step(self._step, ITERATIONS, 30)

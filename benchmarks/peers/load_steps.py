@@ -1,10 +1,11 @@
-"""How a program that moves blocks is driven to the collapse of a wall: as the suite drives its own models.
+"""Search for the collapse load of a wall with a program that integrates the motion of blocks, as in the suite's models.
 
 The load is raised in steps of 0.05 of the weight, each from the last state at rest and over a ramp, and held until the
-wall rests or falls; the step that brings it down is bisected. A wall falls as the suite's do: it has moved by 5 % of a
-block's smaller side and does not slow down. It rests when no block has moved by a thousandth of that in each of three
-looks in a row: these programs do not give the unbalanced forces by which the suite judges rest. A wall that has not
-fallen after a while counts as borne too, and the bracket says that it was creeping.
+wall rests or falls; the step under which it falls is bisected. The criterion of collapse is the suite's: a displacement
+of 5 % of a block's smaller side that does not slow down. A wall rests if no block has moved by a thousandth of that in
+each of three looks in a row, because these programs do not return the unbalanced forces by which the suite judges rest.
+A load under which the wall has not fallen after `PATIENCE` looks counts as carried, and the message of the bracket says
+that the wall was creeping.
 """
 
 import time
@@ -19,37 +20,37 @@ from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.scene import Array, Scene
 
 LOOK = 0.05
-"""Time between two looks [s]: a block that falls freely moves by 12 mm in it."""
+"""Time between two looks at the wall [s]; a block in free fall moves by 12 mm in it."""
 
 RAMP = 5
-"""Looks over which a load is raised."""
+"""Number of looks over which a load is raised."""
 
 PATIENCE = 40
-"""Looks after which a wall that has not fallen is said to bear its load; 1 % too much moves it by 0.1 m till then."""
+"""Number of looks after which a wall that has not fallen counts as stable; 1 % too much load moves it 0.1 m by then."""
 
 REST = 1e-3
-"""Motion between two looks of a wall at rest, as a share of that of a wall in collapse."""
+"""Largest motion of a wall at rest between two looks, relative to the displacement at collapse."""
 
 Status: TypeAlias = Literal["collapse", "undecided", "cost only"]
 
 
 @dataclass(frozen=True)
 class Bracket:
-    """What a program found.
+    """Result of a program.
 
     Parameters
     ----------
     lower, upper
-        Largest multiplier borne, and smallest that was not; None where there was none.
+        Largest multiplier that was carried, and smallest that was not; None if there was none.
     status
-        ``collapse`` where the bracket is as narrow as it was to be, ``undecided`` where it is not, ``cost only`` where
-        none was looked for.
+        ``collapse`` if the bracket is as narrow as requested, ``undecided`` if it is not, ``cost only`` if no bracket
+        was computed.
     loads
         Number of loads tried.
     message
         One line for the reader.
     ratio
-        Cost beside the suite's model of the kind, where there is no bracket to compare.
+        Cost relative to the suite's model of the same kind, if there is no bracket to compare.
     """
 
     lower: float | None
@@ -64,7 +65,7 @@ class Motion(Protocol):
     """A wall in motion in some program."""
 
     def hold(self, multiplier: float, seconds: float) -> None:
-        """Bring the wall forward under its weight and a share of it, along +x; ArithmeticError where it cannot."""
+        """Integrate the motion under the weight and `multiplier` times it along +x; ArithmeticError if that fails."""
 
     def position(self) -> Array:
         """Positions by which the wall's motion is judged, ``(n, 2)`` [m]."""
@@ -74,18 +75,18 @@ class Motion(Protocol):
 
 
 def by_load_steps(motion: Motion, scene: Scene, tolerance: float, budget: float) -> Bracket:
-    """Drive a wall to its collapse.
+    """Bracket the collapse load of a wall by load steps.
 
     Parameters
     ----------
     motion
         The wall, before it has come to rest under its weight.
     scene
-        What it was made of.
+        Scene of the wall.
     tolerance
         Relative width of the bracket at which to stop.
     budget
-        Processor time [s] after which to stop with what there is.
+        Processor time [s] after which to stop with the bracket so far.
     """
     far = U_CRIT * scene.block_size
     verdict = settle(motion, 0.0, far)
@@ -118,9 +119,9 @@ def by_load_steps(motion: Motion, scene: Scene, tolerance: float, budget: float)
 
 
 def settle(motion: Motion, multiplier: float, far: float) -> str:
-    """Hold a load until the wall rests or falls, or patience ends."""
+    """Hold a load until the wall rests or falls, or `PATIENCE` is exceeded; returns the verdict."""
     start = last = motion.position()
-    fall = CollapseDetector(elastic=True)  # looks are too far apart for less
+    fall = CollapseDetector(elastic=True)  # looks are too far apart for the early criterion
     calm = 0
     for look in range(1, PATIENCE + 1):
         motion.hold(multiplier, LOOK)
@@ -135,7 +136,7 @@ def settle(motion: Motion, multiplier: float, far: float) -> str:
 
 
 def _search(borne: Callable[[float, float], bool], tolerance: float, budget: float) -> Bracket:
-    """Raise a load in steps, and bisect the one that is not borne; `borne` is given a load and the last one borne."""
+    """Raise the load in steps and bisect the one not carried; `borne` receives a load and the last one carried."""
     start = time.process_time()
     loads, lower, upper = 0, 0.0, None
     while upper is None or upper - lower > tolerance * upper:
@@ -151,7 +152,7 @@ def _search(borne: Callable[[float, float], bool], tolerance: float, budget: flo
 
 
 def bisect(borne: Callable[[float], bool], upper: float, tolerance: float, budget: float) -> Bracket:
-    """Bisect between no load and one that no wall bears, where loads need not come in order."""
+    """Bisect between zero and a load that no wall carries, for programs that can try loads in any order."""
     start = time.process_time()
     loads, lower = 0, 0.0
     while upper - lower > tolerance * upper:

@@ -1,10 +1,10 @@
 """MuJoCo: rigid boxes with softened contacts.
 
-Blocks are boxes that slide and turn in the plane of the wall. Elliptic cones, and friction ten times as stiff as
-pressure (``impratio``), are what its documentation advises against slip; contacts are stiffer and faster than by
-default, with which a small wall creeps for ten seconds under less than a hundredth of its weight. A half or a quarter
-of the step, and its pass against slip, do not move the bracket of the wall of 240 × 120 mm; ``impratio`` does: 0.44
-with its default of 1, 0.48 with 50.
+Blocks are boxes that translate and rotate in the plane of the wall. Elliptic cones, and friction ten times as stiff as
+pressure (``impratio``), are recommended in MuJoCo's documentation against slip. Contacts are stiffer and faster than by
+default: with the defaults a small wall creeps for ten seconds under less than a hundredth of its weight. A half or a
+quarter of the time step, and MuJoCo's additional pass against slip, do not change the bracket of the wall of
+240 × 120 mm; ``impratio`` does: 0.44 with its default of 1, 0.48 with 50.
 """
 
 import copy
@@ -17,13 +17,13 @@ from peer import Peer
 from runningbond.scene import Array, Scene
 
 STEP = 2e-3
-"""Time step [s]: its default."""
+"""Time step [s], MuJoCo's default."""
 
 FRICTION_STIFFNESS = 10.0
 """``impratio``."""
 
 TIME_CONSTANT = 0.01
-"""Time constant of contacts [s] with the default step, critically damped; half its default, well above two steps."""
+"""Time constant of contacts [s] with the default step, critically damped; half the default, well above two steps."""
 
 IMPEDANCE = (0.99, 0.999, 1e-5, 0.5, 2.0)
 """``solimp``."""
@@ -42,7 +42,7 @@ PEER = Peer(
 
 
 def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
-    """Collapse by steps of load."""
+    """Bracket the collapse load by load steps."""
     return by_load_steps(MujocoWall.of(scene), scene, tolerance, budget)
 
 
@@ -52,7 +52,7 @@ class MujocoWall:
     Parameters
     ----------
     model, data
-        MuJoCo's: what it is made of, and its state.
+        MuJoCo's model of the wall, and its state.
     gravity
         Acceleration of gravity [m/s²].
     """
@@ -62,7 +62,7 @@ class MujocoWall:
 
     @classmethod
     def of(cls, scene: Scene, step: float = STEP) -> "MujocoWall":
-        """The wall of a scene, as it was built."""
+        """The wall of a scene, undeformed."""
         import mujoco
 
         spec = mujoco.MjSpec()
@@ -93,7 +93,7 @@ class MujocoWall:
         return cls(model, data, float(np.hypot(*scene.load.gravity)))
 
     def hold(self, multiplier: float, seconds: float) -> None:
-        """Bring the wall forward."""
+        """Integrate the motion under a load over some seconds."""
         import mujoco
 
         self._model.opt.gravity[:] = multiplier * self._gravity, 0.0, -self._gravity

@@ -1,9 +1,10 @@
-"""OpenSeesPy: triangles of constant strain on the suite's own mesh, with frictional contact node by node.
+"""OpenSeesPy: constant-strain triangles on the suite's own mesh, with frictional node-to-node contact.
 
-Where the suite has a joint point there is a ``zeroLengthContact2D`` of the same stiffness and friction, and nodes
-have their share of the blocks' mass. Statics by load control stop converging at a bit over half the collapse load, so
-it is brought forward in time: Newmark's method with a little numerical damping, Newton's with the unsymmetric tangent.
-A wall that begins to fall no longer converges: that counts as a collapse, and is said.
+Each joint point of the suite is a ``zeroLengthContact2D`` with the same stiffness and friction, and nodes have their
+share of the blocks' mass. Statics by load control stop converging at slightly more than half the collapse load.
+Therefore the motion is integrated in time: Newmark's method with a little numerical damping, and Newton's method with
+the unsymmetric tangent. A wall that begins to fall no longer converges: this counts as collapse, and the message says
+so.
 """
 
 import copy
@@ -27,7 +28,7 @@ GAMMA = 0.6
 """Newmark's γ, with β = (γ + 1/2)² / 4."""
 
 CLOSE, ITERATIONS = 1e-8, 50
-"""Norm of the last correction of all displacements at which a step has converged [m], and iterations to get there."""
+"""Convergence tolerance: norm of the displacement increment [m]; and largest number of iterations."""
 
 PEER = Peer(
     name="OpenSeesPy",
@@ -41,12 +42,12 @@ PEER = Peer(
 
 
 def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
-    """Collapse by steps of load."""
+    """Bracket the collapse load by load steps."""
     return by_load_steps(OpenSeesWall(library(), scene), scene, tolerance, budget)
 
 
 def library() -> Any:
-    """The module. Its wheel for Linux has a BLAS beside it, but does not say so to the loader."""
+    """Import the module, and load the BLAS of its Linux wheel first, which the loader does not find by itself."""
     place = importlib.util.find_spec("openseespylinux")
     if place is not None and place.origin is not None:
         blas = Path(place.origin).parent / "lib" / "libblas.so.3"
@@ -58,9 +59,9 @@ def library() -> Any:
 
 
 class OpenSeesWall:
-    """A wall in OpenSees, which has one model at a time, and no way back to a state.
+    """A wall in OpenSees, which has only one model at a time and cannot return to an earlier state.
 
-    A copy takes the model over; a copy of a wall that has lost it so goes once more through all that it went through.
+    A copy takes over the model; a copy of a wall without the model builds it again and repeats all loads so far.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ class OpenSeesWall:
     scene
         The wall.
     held
-        Multipliers and times that it has been through.
+        Multipliers and times [s] of the loads so far.
     """
 
     def __init__(self, ops: Any, scene: Scene, held: tuple[tuple[float, float], ...] = ()) -> None:
@@ -82,7 +83,7 @@ class OpenSeesWall:
             self.hold(multiplier, seconds)
 
     def hold(self, multiplier: float, seconds: float) -> None:
-        """Bring the wall forward; ArithmeticError where a step does not converge."""
+        """Integrate the motion under a load over some seconds; ArithmeticError if a step does not converge."""
         self._held = (*self._held, (multiplier, seconds))
         self._ops.remove("loadPattern", 1)
         self._ops.pattern("Plain", 1, 1)
@@ -96,7 +97,7 @@ class OpenSeesWall:
         return np.array([self._ops.nodeDisp(node) for node in self._mass])
 
     def copy(self) -> "OpenSeesWall":
-        """The wall once more, which has the model from now on."""
+        """Another wall in the same state, which takes over the model."""
         if not self._has_model:
             return OpenSeesWall(self._ops, self._scene, self._held)
         self._has_model = False
@@ -106,7 +107,7 @@ class OpenSeesWall:
 
 
 def build(ops: Any, scene: Scene) -> dict[int, float]:
-    """Give OpenSees a wall; returns the mass [kg] of each of its nodes."""
+    """Build a wall in OpenSees; returns the mass [kg] of each node."""
     mesh = wall_mesh(scene)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 2)
@@ -140,7 +141,7 @@ def build(ops: Any, scene: Scene) -> dict[int, float]:
 
 
 def touch(ops: Any, scene: Scene, points: Array, interfaces: list[list[int]], first: int) -> None:
-    """Put a contact at both ends of every joint element, numbered from the first."""
+    """Add a contact at both ends of every joint element, with element tags from `first` on."""
     stiffness = joint_stiffness(scene.joint)
     tag = first
     for a0, a1, b1, b0 in interfaces:

@@ -1,24 +1,24 @@
-"""What is said of a peer, whether or not it is installed."""
+"""Description of a peer program, independent of whether it is installed."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Peer:
-    """A program that others would take for these walls.
+    """A program that could be used for these walls instead of the suite.
 
     Parameters
     ----------
     name
-        What the table calls it.
+        Name in the table.
     package
-        Its distribution, which is asked for its version.
+        Name of its distribution, for its version.
     kind
-        What it is a model of.
+        Kind of model.
     rivals
-        Models of the suite of its kind.
+        Models of the suite of the same kind.
     does, does_not
-        What it can and cannot do beside them.
+        Further capabilities, and features that it lacks.
     """
 
     name: str

@@ -1,11 +1,11 @@
 """Pymunk: rigid polygons in the plane by sequential impulses (Chipmunk).
 
-Its defaults are those of games in pixels: 10 iterations, an overlap of 0.1 (here that would be 0.1 m). Here the
-overlap is 0.1 mm, which shapes get as a radius, as its documentation advises against seams, so that they touch from the
-start. Iterations and step are those that bring the wall of 120 × 60 mm to the loads at which its collapse is certified:
-with 10 and 1 ms it falls at 0.39, with 30 at 0.40, with 100 at 0.41, with 100 and half the step at 0.42. On the other
-walls 30 and 1 ms come as far, for a third or less of the time.
-Friction of a pair is the product of the shapes', hence the root.
+Pymunk's defaults are for games in pixels: 10 iterations, and an overlap of 0.1 (here that would be 0.1 m). Here the
+overlap is 0.1 mm; shapes also have it as a radius, as the documentation recommends against seams, and therefore touch
+from the start. Iterations and time step are chosen such that the wall of 120 × 60 mm reaches the loads at which its
+collapse is certified: with 10 iterations and 1 ms it falls at 0.39, with 30 at 0.40, with 100 at 0.41, with 100 and
+half the step at 0.42. On the other walls 30 iterations and 1 ms suffice, for a third of the time or less.
+The friction of a pair is the product of the frictions of the shapes, hence the square root.
 """
 
 from typing import Any
@@ -22,7 +22,7 @@ STEP = 5e-4
 ITERATIONS = 100
 
 OVERLAP = 1e-4
-"""Overlap of shapes that is let be [m]."""
+"""Admissible overlap of shapes [m]."""
 
 PEER = Peer(
     name="pymunk",
@@ -35,17 +35,17 @@ PEER = Peer(
 
 
 def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
-    """Collapse by steps of load."""
+    """Bracket the collapse load by load steps."""
     return by_load_steps(PymunkWall.of(scene), scene, tolerance, budget)
 
 
 class PymunkWall:
-    """A wall in a space of Pymunk's.
+    """A wall in a space of Pymunk.
 
     Parameters
     ----------
     space
-        The space.
+        Space of Pymunk.
     gravity
         Acceleration of gravity [m/s²].
     step
@@ -57,7 +57,7 @@ class PymunkWall:
 
     @classmethod
     def of(cls, scene: Scene, step: float = STEP) -> "PymunkWall":
-        """The wall of a scene, as it was built."""
+        """The wall of a scene, undeformed."""
         import pymunk
 
         space = pymunk.Space()
@@ -76,7 +76,7 @@ class PymunkWall:
         return cls(space, float(np.hypot(*scene.load.gravity)), step)
 
     def hold(self, multiplier: float, seconds: float) -> None:
-        """Bring the wall forward."""
+        """Integrate the motion under a load over some seconds."""
         self._space.gravity = (multiplier * self._gravity, -self._gravity)
         for _ in range(round(seconds / self._step)):
             self._space.step(self._step)
@@ -90,5 +90,5 @@ class PymunkWall:
         return np.array([body.angle for body in self._space.bodies])
 
     def copy(self) -> "PymunkWall":
-        """Another wall in the same state, but for the impulses from which its iterations start."""
+        """Another wall in the same state, except for the impulses from which its iterations start."""
         return PymunkWall(self._space.copy(), self._gravity, self._step)

@@ -1,13 +1,13 @@
-"""compas_cra: rigid blocks in equilibrium (RBE), asked load by load whether admissible forces exist.
+"""compas_cra: rigid-block equilibrium (RBE), which finds for one load whether admissible forces exist.
 
-As its examples do it: the table is tilted by ``rotate_assembly``, by arctan λ, and ``rbe_solve`` runs the IPOPT that is
-in its wheel. Since release 0.8 that is the penalty form of Kao et al. (2022): tension is allowed at a million times the
-price of compression, so that there always is an answer, and a load is borne where the answer has no tension. That is a
-matter of digits: below the collapse load tension is 1e-7 to 1e-4 of the largest compression, and grows steadily through
-it. `TENSION` is where a line is drawn; forces are in weights of the heaviest block.
+As in its examples, ``rotate_assembly`` tilts the ground by arctan λ, and ``rbe_solve`` runs the IPOPT of its wheel.
+Since release 0.8 this is the penalty form of Kao et al. (2022): tension is allowed at a million times the cost of
+compression, and a solution always exists; a load is carried if the solution has no tension. This depends on a
+threshold: below the collapse load tension is 1e-7 to 1e-4 of the largest compression, and it grows steadily through
+the collapse load. `TENSION` is this threshold; forces are in weights of the heaviest block.
 
-Interfaces are the scene's joints. Its own search for them takes 2 s for a wall of 20 blocks, and does not find the
-ground under a wide wall.
+Interfaces are the scene's joints. The search for interfaces in compas_cra takes 2 s for a wall of 20 blocks, and does
+not find the ground under a wide wall.
 """
 
 import contextlib
@@ -23,10 +23,10 @@ from peer import Peer
 from runningbond.scene import Scene
 
 IN_SPACE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-"""From the plane of the wall into space, z upwards."""
+"""Map from the plane of the wall to space, with z upwards."""
 
 TENSION = 1e-4
-"""Tension, as a share of the largest compression, from which a load is not borne."""
+"""Tension, relative to the largest compression, above which a load is not carried."""
 
 PEER = Peer(
     name="compas_cra RBE",
@@ -41,7 +41,7 @@ PEER = Peer(
 
 
 def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
-    """Bisect between no load and tan φ, above which no dry wall slides less than it is pushed."""
+    """Bisect between zero and tan φ, above which every dry wall slides."""
     assembly = tilting_table(scene)
     angle = 0.0
 
@@ -55,7 +55,7 @@ def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
 
 
 def tilting_table(scene: Scene) -> Any:
-    """The wall in three dimensions, the ground its support."""
+    """The wall as an assembly in three dimensions, with the ground as its support."""
     from compas.geometry import Box, Frame
     from compas_assembly.datastructures import Block
     from compas_cra.datastructures import CRA_Assembly
@@ -78,11 +78,11 @@ def tilting_table(scene: Scene) -> Any:
 
 
 def without_tension(assembly: Any, scene: Scene) -> bool:
-    """Whether the forces found for an assembly press at every point."""
+    """Whether the forces that RBE finds for an assembly have no tension at any point."""
     from compas_cra.equilibrium import rbe_solve
 
     density = 1 / float((scene.blocks.area * scene.thickness)[~scene.fixed].max())
-    with contextlib.redirect_stdout(io.StringIO()):  # it prints the shape of every matrix, and a line a block
+    with contextlib.redirect_stdout(io.StringIO()):  # rbe_solve prints the shape of every matrix, and a line per block
         rbe_solve(assembly, mu=scene.joint.friction, density=density)
     forces = [force for interface in interfaces(assembly) for force in interface.forces]
     tension, compression = (max(float(force[part]) for force in forces) for part in ("c_nn", "c_np"))

@@ -1,13 +1,14 @@
-"""A block of 0.5 × 2 m on a ground that moves: `dem-dynamic` and engines of games and robots beside Housner's equation.
+"""A block of 0.5 × 2 m under ground motion: `dem-dynamic` and engines for games and robots beside Housner's equation.
 
     PYTHONPATH=. python benchmarks/peers/rocking_block.py
 
-Needs ``pip install -e '.[peers]'``; an engine that is missing has a line that says so. Pulses are 5 % to either side of
-six overturning edges of Housner's block (Zhang & Makris 2001). All follow them in the frame of the ground, each step
-under the ground's mean acceleration over it, from rest under gravity until the block lies or `SECONDS` after the pulse.
-Engines run by turns on each pulse, in one process; seconds are of the processor for the motion alone, without building
-and settling. Engines are taken with the settings of the walls' table (the heads of their modules), and with a tenth of
-the step. At the end what a second of motion costs on a wall of 300 blocks, from `MANY` seconds of it.
+Needs ``pip install -e '.[peers]'``; the table has a line for an engine that is missing. Pulses are 5 % below and above
+six overturning thresholds of Housner's block (Zhang & Makris 2001). All programs integrate in the frame of the ground,
+each step under the mean ground acceleration over it, from rest under gravity until the block has overturned or
+`SECONDS` after the pulse. Engines run in turn on each pulse, in one process; seconds are processor time for the motion
+only, without building and settling. Engines have the settings of the walls' table (see the docstrings of their
+modules), and also a tenth of the time step. The last table is the cost of a second of motion for a wall of 300 blocks,
+from `MANY` seconds of it.
 """
 
 import math
@@ -63,22 +64,22 @@ class Pulse:
 
     @property
     def period(self) -> float:
-        """Of the sine [s]."""
+        """Period of the sine [s]."""
         return 2 * math.pi / (self.ratio * BLOCK.p)
 
     @property
     def history(self) -> History:
-        """The ground's, for λ = 1."""
+        """Ground motion for λ = 1."""
         return shaken("sine" if self.cycles == 1 else "half-sine", UNIT, self.period)
 
     @property
     def exact(self) -> float:
-        """Largest rotation of Housner's block, or inf."""
+        """Largest rotation of Housner's block [rad], inf if it overturns."""
         return BLOCK.peak(self.scale * UNIT, self.period, self.cycles)
 
 
 def ours(stiffness: float) -> Callable[[Pulse], Answer]:
-    """`dem-dynamic` on joints of a stiffness [Pa/m]."""
+    """`dem-dynamic` with a joint stiffness [Pa/m], as a function of the pulse."""
     rest = resting(block(BLOCK.b, BLOCK.h, still(), stiffness=stiffness))
     corners = np.array([[0.0, 0.0], [2 * BLOCK.b, 0.0]])
 
@@ -97,7 +98,7 @@ def ours(stiffness: float) -> Callable[[Pulse], Answer]:
 
 
 def engine(kind: Any, step: float) -> Callable[[Pulse], Answer]:
-    """An engine that is driven as the walls of this folder are."""
+    """An engine, by the class of its wall in this folder, as a function of the pulse."""
 
     def answer(pulse: Pulse) -> Answer:
         scene = block(BLOCK.b, BLOCK.h, still())
@@ -115,7 +116,7 @@ def engine(kind: Any, step: float) -> Callable[[Pulse], Answer]:
 
 
 def competitors() -> dict[str, Callable[[Pulse], Answer] | None]:
-    """All that are installed, each in its settings; None are those that are not."""
+    """All programs with their settings; None for those that are not installed."""
     found: dict[str, Callable[[Pulse], Answer] | None] = {
         f"`dem-dynamic`, {stiffness:.0e} Pa/m".replace("+", ""): ours(stiffness) for stiffness in (1e10, 1e11)
     }
@@ -134,7 +135,7 @@ def main() -> None:
     runs = competitors()
     found: dict[str, list[Answer]] = {name: [] for name, run in runs.items() if run}
     for name in found:
-        answer(runs, name, pulses[0])  # kernels
+        answer(runs, name, pulses[0])  # loads the kernels
     print("largest rotation in α, or a fall, by pulse: cycles, ω / p, amplitude in g tan α\n")
     names = list(found)
     print("| pulse | Housner | " + " | ".join(names) + " |\n" + "|---" * (len(names) + 2) + "|")
@@ -163,13 +164,13 @@ def main() -> None:
 
 
 def means(history: History, scale: float, step: float, steps: int) -> list[float]:
-    """Inertia of the blocks in each step, by its mean, in weights."""
+    """Mean inertia force on the blocks in each step, relative to their weight."""
     velocity = scale * history.velocity(np.linspace(0.0, step * steps, steps + 1))[:, 0]
     return [float(-x) for x in np.diff(velocity) / (step * GRAVITY)]
 
 
 def crowd() -> Iterator[tuple[str, float]]:
-    """Processor seconds a second of motion of a wall of many blocks under a sine of 2 Hz and 0.3 g."""
+    """Processor seconds per second of motion, by program, for a wall of many blocks under a sine of 2 Hz and 0.3 g."""
     scene = wall_of(CROWD)
     history = shaken("sine", 0.3 * GRAVITY, 0.5)
     rest = resting(replace(scene, load=replace(scene.load, live=(history,))))
@@ -193,19 +194,19 @@ def crowd() -> Iterator[tuple[str, float]]:
 
 
 def answer(runs: dict[str, Callable[[Pulse], Answer] | None], name: str, pulse: Pulse) -> Answer:
-    """What a program that is installed says of a pulse."""
+    """Answer of an installed program for a pulse."""
     run = runs[name]
     assert run is not None
     return run(pulse)
 
 
 def told(peak: float) -> str:
-    """A rotation in α, or a fall."""
+    """Text for a rotation, relative to α, or for a fall."""
     return "falls" if peak == math.inf else f"{peak / BLOCK.alpha:.3f}"
 
 
 def cost(answers: list[Answer]) -> float:
-    """Processor seconds a second of motion."""
+    """Processor seconds per second of motion."""
     return sum(row[1] for row in answers) / sum(row[2] for row in answers)
 
 

@@ -1,15 +1,15 @@
-"""The suite's models and the programs one would take instead, on the same walls: λ, processor time, and their ratio.
+"""The suite's models and other programs on the same walls: λ, processor time, and the ratio of times.
 
-Needs ``pip install -e '.[peers]'``; a program that is missing, or breaks, has a line that says so. From the project's
+Needs ``pip install -e '.[peers]'``; the table has a line for a program that is missing or fails. From the project's
 directory:
 
     python benchmarks/peers/side_by_side.py
     python benchmarks/peers/side_by_side.py --walls trial --out /tmp/trial.jsonl
 
-Every run is a process of its own with one thread, and writes one line to a file as it ends; broken off and started
-again it goes on from there, unless the code or a program's version has changed. Runs go by turns, all programs once and
-then again. Seconds are processor time of finding the bracket, without imports; those of compiled kernels are in a
-warming run that is not counted. Where there are several runs of a program, its number is their median.
+Every run is a process of its own with one thread, and adds one line to a file as it ends. An interrupted comparison
+continues from there, unless the code or a program's version has changed. Runs are in turn, all programs once and then
+again. Seconds are processor time to find the bracket, without imports and without the compilation of kernels, which is
+part of a warm-up run. For several runs of a program the table has their median.
 """
 
 import argparse
@@ -45,10 +45,10 @@ TOLERANCE = 0.01
 """Relative width of the brackets."""
 
 RUNS, DEAR = 3, 30.0
-"""Runs of each program on each wall, and processor time [s] of one from which it is not repeated."""
+"""Runs of each program on each wall, and processor time [s] of a run above which it is not repeated."""
 
 BUDGET = 1200.0
-"""Processor time [s] after which a program stops with what it has."""
+"""Processor time [s] after which a program stops with its bracket so far."""
 
 HERE = Path(__file__).parent
 OUT = Path("comparison/peers.jsonl")
@@ -57,7 +57,7 @@ Record: TypeAlias = dict[str, Any]
 
 
 def peer_of(program: str) -> Peer:
-    """What is said of a peer."""
+    """Description of a peer by the name of its module."""
     peer = import_module(program).PEER
     assert isinstance(peer, Peer)
     return peer
@@ -75,7 +75,7 @@ def run_one(program: str, scene: Scene, tolerance: float) -> Bracket:
 
 
 def find(wall: str, program: str) -> Record:
-    """Bracket and processor time of a program on a wall, once it is loaded and its kernels compiled."""
+    """Bracket and processor time of a program on a wall, after a warm-up run on the trial wall."""
     run_one(program, wall_of("trial"), 0.5)
     scene = wall_of(wall)
     start = time.process_time()
@@ -84,7 +84,7 @@ def find(wall: str, program: str) -> Record:
 
 
 def in_a_process(wall: str, program: str) -> Record:
-    """What a process of its own finds, or how it ended."""
+    """Run a program on a wall in a process of its own; returns the result, or how the process ended."""
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
     command = [sys.executable, __file__, "--one", wall, program]
     with tempfile.TemporaryDirectory() as folder:
@@ -110,7 +110,7 @@ def in_a_process(wall: str, program: str) -> Record:
 
 
 def state_of_things() -> str:
-    """Digest of the code that drives programs, and of their versions: what was found with another is found again."""
+    """Digest of the code and of the programs' versions; runs with another digest are repeated."""
     digest = hashlib.sha256(code_digest().encode())
     for source in sorted(HERE.glob("*.py")):
         if source.name != Path(__file__).name:
@@ -121,7 +121,7 @@ def state_of_things() -> str:
 
 
 def version_of(package: str) -> str:
-    """Version of a distribution, empty where it is not installed."""
+    """Version of a distribution; empty if it is not installed."""
     try:
         return version(package)
     except PackageNotFoundError:
@@ -129,12 +129,12 @@ def version_of(package: str) -> str:
 
 
 def kept(place: Path, state: str) -> list[Record]:
-    """Whole lines of a file that were found with the same code and programs."""
+    """Records in the complete lines of a file that are from the same code and programs."""
     records = []
     for line in place.read_text().splitlines() if place.exists() else []:
         try:
             record = json.loads(line)
-        except ValueError:  # broken off while it was written
+        except ValueError:  # interrupted while the line was written
             continue
         if record.get("state") == state:
             records.append(record)
@@ -142,7 +142,7 @@ def kept(place: Path, state: str) -> list[Record]:
 
 
 def run_all(walls: Sequence[str], programs: Sequence[str], place: Path) -> list[Record]:
-    """Run programs on walls by turns, and keep each result as it comes."""
+    """Run programs on walls in turn, and store each result as soon as it is available."""
     state = state_of_things()
     records = kept(place, state)
     place.parent.mkdir(parents=True, exist_ok=True)
@@ -167,7 +167,7 @@ def of_cell(records: Sequence[Record], wall: str, program: str) -> list[Record]:
 
 
 def middle(runs: Sequence[Record]) -> float | None:
-    """Median of the processor times of some runs, where they found anything."""
+    """Median processor time of the runs that found a collapse; None if there is none."""
     times = [run["seconds"] for run in runs if run.get("status") == "collapse"]
     return statistics.median(times) if times else None
 
@@ -200,7 +200,7 @@ def table(records: Sequence[Record], walls: Sequence[str], programs: Sequence[st
 
 
 def bracket_of(run: Record) -> str:
-    """Bracket as it is printed."""
+    """Bracket as text."""
     if run.get("lower") is None:
         return "–"
     upper = "?" if run["upper"] is None else f"{run['upper']:.4f}"
@@ -208,7 +208,7 @@ def bracket_of(run: Record) -> str:
 
 
 def seconds_of(runs: Sequence[Record]) -> str:
-    """Median and spread of processor times."""
+    """Median and spread of processor times, as text."""
     times = sorted(run["seconds"] for run in runs if "seconds" in run)
     if not times or runs[0]["status"] == "cost only":
         return "–"
@@ -217,7 +217,7 @@ def seconds_of(runs: Sequence[Record]) -> str:
 
 
 def ratios(records: Sequence[Record], wall: str, program: str) -> list[tuple[str, float]]:
-    """Cost of a peer in costs of each model of its kind."""
+    """Cost of a peer relative to each model of its kind."""
     if program in MODELS:
         return []
     peer, runs = peer_of(program), of_cell(records, wall, program)
@@ -230,7 +230,7 @@ def ratios(records: Sequence[Record], wall: str, program: str) -> list[tuple[str
 
 
 def verdict(records: Sequence[Record], walls: Sequence[str], programs: Sequence[str]) -> str:
-    """Whether a peer costs less than a model of its kind somewhere."""
+    """Sentence on whether a peer costs less than a model of its kind on any wall."""
     all_ratios = [
         (ratio, f"{peer_of(program).name} on {wall}: {ratio:.3g} × `{model}`")
         for wall in walls
@@ -246,7 +246,7 @@ def verdict(records: Sequence[Record], walls: Sequence[str], programs: Sequence[
 
 
 def machine() -> str:
-    """What it ran on."""
+    """Description of the machine."""
     info = Path("/proc/cpuinfo")
     lines = info.read_text().splitlines() if info.exists() else []
     name = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
@@ -254,7 +254,7 @@ def machine() -> str:
 
 
 def main() -> None:
-    """Run what is missing, and print what there is."""
+    """Run the missing cases, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--walls", nargs="+", choices=[*WALLS, *TRIAL], default=list(WALLS))
     parser.add_argument("--programs", nargs="+", choices=PROGRAMS, default=list(PROGRAMS))
@@ -262,7 +262,7 @@ def main() -> None:
     parser.add_argument("--one", nargs=2, metavar=("WALL", "PROGRAM"), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.one:
-        resource.setrlimit(resource.RLIMIT_CPU, (round(1.5 * BUDGET), round(1.5 * BUDGET)))  # for what hangs
+        resource.setrlimit(resource.RLIMIT_CPU, (round(1.5 * BUDGET), round(1.5 * BUDGET)))  # ends a program that hangs
         arguments.out.write_text(json.dumps(find(*arguments.one)))
         return
     walls, programs = arguments.walls, arguments.programs

@@ -1,4 +1,4 @@
-"""The walls that every program is given: dry, on a frictional base, pushed by a share of their own weight."""
+"""The walls for all programs: dry, on a frictional base, under lateral load proportional to their own weight."""
 
 from typing import NamedTuple
 
@@ -21,11 +21,11 @@ WALLS = {
 }
 
 TRIAL = {"trial": Size(240, 120, 480, 960)}
-"""A wall of a few blocks, to see whether everything runs."""
+"""A wall of a few blocks, to check that everything runs."""
 
 
 def wall_of(name: str) -> Scene:
-    """A wall by its name, 120 mm thick, of 1800 kg/m³, tan φ = 0.6."""
+    """A wall by its name, 120 mm thick, with 1800 kg/m³ and tan φ = 0.6."""
     size = (WALLS | TRIAL)[name]
     width, height, length, rise = (1e-3 * x for x in size)
     return scene_from_dict(

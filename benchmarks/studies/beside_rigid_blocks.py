@@ -1,19 +1,19 @@
-"""Deformable blocks beside rigid ones on the sixteen panels, where both have the same joint points or on finer meshes.
+"""Deformable blocks beside rigid ones on the sixteen panels, with the same joint points or on finer meshes.
 
-Prints a Markdown table, one row a panel as it ends. From the project's directory, for all panels or some of them:
+Prints a Markdown table, one row per panel as it ends. From the project's directory, for all panels or some of them:
 
     python benchmarks/studies/beside_rigid_blocks.py
     python benchmarks/studies/beside_rigid_blocks.py panel-10 panel-12
 
-On a mesh of two cells in half a block along the course and in its height, with the same points or with points on
+With a mesh of two cells in half a block along the course and in its height, with the same points or with points on
 every joint element:
 
     python benchmarks/studies/beside_rigid_blocks.py --cells 2
     python benchmarks/studies/beside_rigid_blocks.py --cells 2 --points elements
 
-A dry wall's λ depends on its history, and where slips set off slips a history on the last bit of a number. Draws of
-one wall differ in its density, by parts in a thousand million that change nothing else; then rows are means of their
-λ with standard errors, and their range:
+A dry wall's λ depends on its history; where one slip triggers others, the history depends on the last bits of numbers.
+Draws of a wall differ in density by a few parts in 1e9, which changes nothing else; rows then have the mean of their
+λ with its standard error, and their range:
 
     python benchmarks/studies/beside_rigid_blocks.py --draws 25 panel-11
 """
@@ -45,12 +45,12 @@ DRAW = 1e-9
 
 
 def redrawn(scene: Scene, k: int) -> Scene:
-    """A wall that differs from another in nothing that counts."""
+    """The k-th draw of a wall, whose density differs by k times `DRAW`."""
     return scene.with_block(density=scene.block.density * (1 + k * DRAW))
 
 
 def outcome_of(scene: Scene, model: str, cells: int = 1, points: PointsOn = "joints") -> Outcome:
-    """Outcome of one model, `fem` on a mesh of so many cells and with points on its elements or on whole joints."""
+    """Outcome of a model; for `fem` with the given number of cells, and points on joint elements or whole joints."""
     if model == "fem":
         return fem(scene, TOLERANCE, cells=cells, points=points)
     return run_model(model, scene, TOLERANCE)
@@ -70,12 +70,12 @@ class Sample:
 
     @property
     def mean(self) -> float:
-        """Their mean."""
+        """Mean multiplier."""
         return float(self.each.mean())
 
     @property
     def error(self) -> float:
-        """Standard error of the mean; 0 of a single draw."""
+        """Standard error of the mean; 0 for a single draw."""
         return float(self.each.std(ddof=1) / np.sqrt(len(self.each))) if len(self.each) > 1 else 0.0
 
     def __str__(self) -> str:
@@ -85,13 +85,13 @@ class Sample:
 
 
 def sample(outcomes: Sequence[Outcome]) -> Sample | None:
-    """Multipliers of the outcomes that have one, if any has."""
+    """Multipliers of the outcomes that have one; None if none has."""
     each = [outcome.multiplier for outcome in outcomes if outcome.multiplier is not None]
     return Sample(np.array(each)) if each else None
 
 
 def told(outcomes: Sequence[Outcome]) -> str:
-    """Answer of one outcome; of several what they come to, and how many have a multiplier if not all have."""
+    """Answer of one outcome, or the sample of several, with the number of multipliers if not all have one."""
     if len(outcomes) == 1:
         return answer(outcomes[0])
     found = sample(outcomes)
@@ -100,7 +100,7 @@ def told(outcomes: Sequence[Outcome]) -> str:
 
 
 def apart(deformable: Sample, rigid: Sample) -> str:
-    """How far one mean is from the other, with its standard error where there are draws."""
+    """Relative difference of the means, with its standard error if there are several draws."""
     ratio = deformable.mean / rigid.mean
     off = f"{round(100 * (ratio - 1), 2) or 0.0:+.2f}"  # no −0.0
     if len(rigid.each) == len(deformable.each) == 1:
@@ -120,8 +120,8 @@ def main() -> None:
     print("| panel | `dem-dynamic` | `fem` | beside the other's |\n|---|---|---|---|")
     with Parallel(n_jobs=-1) as workers:
         for name in asked.panels:
-            walls = [redrawn(published_scene(name), k) for k in range(asked.draws)]  # of 1000 GPa, as the paper's are
-            # What takes longest first.
+            walls = [redrawn(published_scene(name), k) for k in range(asked.draws)]  # E = 1000 GPa, as in the paper
+            # The slowest cases first.
             cases = [(wall, model) for model in ("fem", "dem-dynamic") for wall in walls]
             outcomes = workers(delayed(outcome_of)(*case, asked.cells, asked.points) for case in cases)
             deformable, rigid = outcomes[: asked.draws], outcomes[asked.draws :]

@@ -1,9 +1,10 @@
-"""Laws of what the models cost, fitted to tables of comparisons and printed as the `Cost` of each model.
+"""Cost laws of the models, fitted to tables of comparisons and printed as the `Cost` of each model.
 
-Beyond the largest wall of the comparison they go by docs/cost-over-size.csv, which `benchmarks/cost_over_size.py` left.
+For walls larger than those of the comparison the fit includes docs/cost-over-size.csv, which
+`benchmarks/cost_over_size.py` wrote.
 
 From the project's directory, after ``runningbond compare --fresh --out fine`` and the same with ``--tolerance 0.05``
-and ``--out coarse``, which gives the powers of the tolerance:
+and ``--out coarse``, for the exponents of the tolerance:
 
     python benchmarks/studies/cost_laws.py fine/table.csv coarse/table.csv
 """
@@ -19,7 +20,7 @@ import numpy as np
 from dem.dynamic import dem_dynamic
 from runningbond.compare import published_scene
 from runningbond.compare.advice import TOLERANCE
-from runningbond.compare.advice.costs import COARSE
+from runningbond.compare.advice.costs import FITTED_TOLERANCE
 from runningbond.models import MODELS, run_model
 from runningbond.scene import Scene
 
@@ -39,7 +40,7 @@ def seconds_of(table: str) -> dict[tuple[str, str], tuple[int, float]]:
 
 
 def seconds_beyond(blocks: int) -> list[tuple[str, int, float]]:
-    """Model, blocks and seconds of walls of more blocks."""
+    """Model, blocks and seconds of walls with more than this number of blocks."""
     with Path(LARGE).open(encoding="utf-8", newline="") as file:
         rows = [
             (row["model"], int(row["blocks"]), float(row["seconds"]))
@@ -54,11 +55,11 @@ DEARER: dict[str, tuple[str, dict[str, float]]] = {
     "crushed": ("joint.compressive_strength", {"compressive_strength": 5e5}),
     "soft": ("block.young", {"young": 5e9}),
 }
-"""What of a wall makes it dearer: the key that a model reads of it, and changes of the default material."""
+"""Features that increase the cost: the key that a model must read, and changes of the default material."""
 
 
 def print_factors() -> None:
-    """How many times as long models take for walls W1 to W3 so changed, in the median, once they are loaded."""
+    """Print the factors on the time of each model by the changes in `DEARER`: medians over walls W1 to W3."""
     walls = [published_scene(f"wall-w{k}") for k in (1, 2, 3)]
     for model in MODELS.values():
         for factor, (key, changes) in DEARER.items():
@@ -73,7 +74,7 @@ def print_factors() -> None:
 
 
 def _processor_seconds(model: str, scene: Scene) -> float:
-    """Processor seconds of a second run, at the tolerance of `advise`."""
+    """Processor seconds at the tolerance of `advise`, of a second run, without compilation."""
     run_model(model, scene, TOLERANCE)
     start = time.process_time()
     run_model(model, scene, TOLERANCE)
@@ -81,7 +82,7 @@ def _processor_seconds(model: str, scene: Scene) -> float:
 
 
 def main() -> None:
-    """Fit log seconds to log blocks and to whether the wall has weight, a line a model; then the tolerance."""
+    """Fit log seconds against log blocks and absence of weight, one line per model; then against the tolerance."""
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     fine = seconds_of(sys.argv[1])
@@ -99,7 +100,7 @@ def main() -> None:
         coarse = seconds_of(sys.argv[2])
         for model in BRACKETING:
             ratios = [math.log(fine[cell][1] / t) for cell, (_, t) in coarse.items() if cell[1] == model]
-            print(f"{model}: finer={np.mean(ratios) / math.log(TOLERANCE / COARSE):.2f}")
+            print(f"{model}: finer={np.mean(ratios) / math.log(TOLERANCE / FITTED_TOLERANCE):.2f}")
     seconds = []
     for _ in range(2):
         start = time.process_time()

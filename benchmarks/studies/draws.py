@@ -1,6 +1,6 @@
-"""Draws of the models that follow a path beside certified loads, on walls that end in more than one way.
+"""Draws of the models that follow a loading path beside certified loads, on walls with more than one collapse load.
 
-Prints a Markdown table, a row a wall and model as it ends. Draws that are in the folder are not computed again:
+Prints a Markdown table, one row per wall and model as it ends. Draws stored in the folder are not computed again:
 
     python benchmarks/studies/draws.py --draws 20 panel-07 panel-10 panel-11 panel-12
     python benchmarks/studies/draws.py --draws 20 --models dem-dynamic --scatter size=0.01 panel-12
@@ -22,7 +22,7 @@ TOLERANCE = 0.005
 
 
 def row(draws: Draws) -> str:
-    """Cells of a row: draws that collapse, lowest, median and highest, mean with its standard error, scatter."""
+    """Cells of a row: number of collapses; lowest, median and highest λ; mean with its standard error; scatter."""
     loads = draws.multipliers
     count = f"{len(loads)} of {len(draws.outcomes)}"
     if draws.mean is None or draws.error is None:

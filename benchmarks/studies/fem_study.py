@@ -1,6 +1,6 @@
-"""Where the load multiplier of deformable blocks settles: joint quadrature, mesh, modes, lumped loads and load steps.
+"""Convergence of the load multiplier of deformable blocks: joint quadrature, mesh, modes, lumped loads and load steps.
 
-Prints a Markdown table, one row a run as it ends: the bracket of λ and how far its middle lies from that of
+Prints a Markdown table, one row per run as it ends: the bracket of λ, and the difference of its middle from that of
 `dem-dynamic`. From the project's directory, for all walls (panel-06 takes longest) or some of them:
 
     python benchmarks/studies/fem_study.py
@@ -21,17 +21,17 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene
 
 WALLS = {"panel-02": 2, "panel-04": 4, "panel-06": 2, "wall-w1": 4}
-"""Walls, and the finest mesh that each is taken to, in cells."""
+"""Walls, and the number of cells of the finest mesh for each."""
 
 INSET = 0.02
-"""Distance of wall-w1's contacts from the ends of its joints [m], with which its λ is unique."""
+"""Distance of wall-w1's contacts from the ends of its joints [m], which makes its λ unique."""
 
 RULES = {"Lobatto 2": lobatto(), "Lobatto 3": lobatto(3), "Gauss 2": gauss(2)}
 
 
 @dataclass(frozen=True)
 class Case:
-    """One run of a wall."""
+    """Settings of one run of a wall."""
 
     rule: str = "Lobatto 2"
     points: Literal["elements", "joints"] = "elements"
@@ -41,7 +41,7 @@ class Case:
     first_step: float = FIRST_STEP
 
     def run(self, scene: Scene) -> Outcome:
-        """The wall's collapse in this case."""
+        """Outcome of a scene with these settings."""
         rule: Rule = RULES[self.rule]
         return fem(
             scene,
@@ -58,7 +58,7 @@ class Case:
 
 
 def cases(finest: int) -> list[Case]:
-    """What is varied, one thing at a time."""
+    """Cases, mostly with one setting varied at a time."""
     on: tuple[Literal["elements", "joints"], ...] = ("elements", "joints")
     modes: tuple[ModeCount, ...] = (3, 6, 20, "all")
     found = [Case(rule, points) for points in on for rule in RULES]
@@ -69,7 +69,7 @@ def cases(finest: int) -> list[Case]:
 
 
 def wall(name: str) -> Scene:
-    """A published wall, its blocks of 1000 GPa as the paper's are."""
+    """A published wall with E = 1000 GPa, as in the paper."""
     scene = published_scene(name)
     inset = INSET if name == "wall-w1" else 0.0
     return scene.with_block(young=1e12, poisson=0.0).with_joint(inset=inset)

@@ -1,7 +1,7 @@
-"""Whether walls fall by mechanisms that close what their history has opened, which no certificate of a whole wall has.
+"""Whether walls fall by mechanisms that close earlier gaps, which certificates for the undeformed wall exclude.
 
-Prints a Markdown table, a row a wall: the bracket of `dem-dynamic`, certified loads, joint points that close in the
-fall by more than a thousandth of the largest motion, and how many of them stood open when it began.
+Prints a Markdown table, one row per wall: the bracket of `dem-dynamic`, certified loads, the number of joint points
+that close in the fall by more than a thousandth of the largest motion, and how many of these were open when it began.
 
     python benchmarks/studies/gaps_in_falls.py panel-10 panel-12
 """
@@ -22,21 +22,21 @@ TOLERANCE = 0.005
 
 
 class Holds:
-    """First and last motion ``(nd,)`` seen under each load, and the run."""
+    """Observer that keeps the first and last motion ``(nd,)`` under each load, and the run."""
 
     def __init__(self) -> None:
         self.motions: dict[float, tuple[Array, Array]] = {}
         self.run: Run | None = None
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Note the motion."""
+        """Store the motion of a state."""
         self.run = run
         now = state.motion.copy()
         self.motions[multiplier] = self.motions.get(multiplier, (now, now))[0], now
 
 
 def row(name: str) -> str:
-    """Cells of a wall."""
+    """Table row of a wall."""
     scene, seen = published_scene(name), Holds()
     outcome = dem_dynamic(scene, TOLERANCE, observe=seen)
     if outcome.upper is None or seen.run is None:

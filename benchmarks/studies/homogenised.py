@@ -1,8 +1,8 @@
-"""How far `homog` is off the limit load of blocks: panels of six textures, seven slendernesses, coarse and fine bond.
+"""Deviation of `homog` from the limit load of blocks: panels of six textures, seven slendernesses and several sizes.
 
-Prints a Markdown table, a row for blocks that are no taller than wide or taller, and for the fewer of courses and of
-blocks in a course: how many panels, and the least, middle and largest deviation from `limit`. `homog.model.OFF` holds
-what it prints.
+Prints a Markdown table, with rows by shape of the blocks (taller than wide or not) and by the smaller of the numbers of
+courses and of blocks per course: the number of panels, and the least, median and largest deviation from `limit`.
+`homog.model.OFF` has these values.
 
     python benchmarks/studies/homogenised.py
 """
@@ -24,7 +24,7 @@ FRICTIONS = (0.3, 0.5, 0.7, 1.0)
 
 
 def panel(texture: float, blocks: int, courses: int, friction: float) -> Scene:
-    """A panel of blocks 0.24 m wide, pushed sideways by its weight."""
+    """A panel of blocks 0.24 m wide, under lateral load proportional to its weight."""
     width, height = 0.24, 0.24 / texture
     size = {"length": blocks * width, "height": courses * height}
     return scene_from_dict(

@@ -1,8 +1,8 @@
-"""How far the smallest load that `limit-nonassociated` certifies on a wall goes by the random starts of its search.
+"""Influence of the random starts of its search on the smallest load that `limit-nonassociated` certifies.
 
     python benchmarks/studies/limit_starts.py [SCENE [SEARCHES]]
 
-Searches of the published wall as the suite makes it, then with other random numbers each: their loads, ascending.
+The published wall is searched with the suite's random numbers, then with others; prints the loads in ascending order.
 """
 
 import statistics
@@ -18,7 +18,7 @@ DEFAULT_RNG = np.random.default_rng
 
 
 def smallest(name: str, other: int) -> float:
-    """The smallest load certified on a wall, by other seeds than the suite's unless `other` is zero."""
+    """Smallest certified load of a wall, with other seeds than the suite's unless `other` is zero."""
 
     def seeded(seed: int | list[int]) -> np.random.Generator:
         numbers = [seed] if isinstance(seed, int) else seed

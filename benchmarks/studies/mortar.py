@@ -1,9 +1,9 @@
-"""Why models of the mortared walls bear more than was measured: what they leave out, added one after the other.
+"""Why models of the mortared walls carry more than was measured: missing features, added one after the other.
 
     python benchmarks/studies/mortar.py [WALL …] [--only WORDS]
 
-Largest force [kN] at small displacements, its part of the measured one, and processor seconds. Rows below the last
-feature change one thing of the scene that is shipped, in rigid blocks that split.
+Prints the largest force [kN] at small displacements, its deviation from the measured one, and processor seconds. The
+last rows change one parameter of the shipped scene, with rigid blocks that split.
 """
 
 import argparse
@@ -27,29 +27,29 @@ SPLITS = replace(CRUSHES, splits=True)
 
 
 def same(scene: Scene) -> Scene:
-    """The scene as it is shipped."""
+    """Return the scene as shipped."""
     return scene
 
 
 def straight(scene: Scene) -> Scene:
-    """Softening on straight branches of the same energies, in the joints and in the bricks."""
+    """Set linear softening with the same fracture energies, in the joints and in the bricks."""
     return replace(scene, joint_materials=tuple(replace(each, softening="linear") for each in scene.joint_materials))
 
 
 def unhardened(scene: Scene) -> Scene:
-    """A cap that does not harden, and straight branches."""
+    """Set a cap without hardening, and linear softening."""
     return straight(scene).with_joint(peak_closure=0.0)
 
 
 def softer(scene: Scene) -> Scene:
-    """With a quarter of the joints' stiffness."""
+    """Set a quarter of the joints' stiffness."""
     stiffness = joint_stiffness(scene.joint)
     return scene.with_joint(elasticity=Stiffness(stiffness.normal / 4, stiffness.shear / 4))
 
 
 @dataclass(frozen=True)
 class Case:
-    """A model, what it takes of the wall, and what is changed of that."""
+    """A model, the features of the wall that its scene includes, and a change of the scene."""
 
     what: str
     solve: Callable[..., Outcome] = dem_dynamic
@@ -99,7 +99,7 @@ CASES = (
 
 
 def main(names: list[str], words: str) -> None:
-    """Print a row a case of each wall, of those cases that have some words in their names."""
+    """Print one row per wall and case, for cases whose names contain `words`."""
     walls = shipped_walls()
     print("| wall | what | V [kN] | ΔV | CPU s |\n| --- | --- | --- | --- | --- |")
     for name in names:

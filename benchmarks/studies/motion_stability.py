@@ -1,12 +1,12 @@
-"""Where an answer of `dem-dynamic` to a motion of its ground may be trusted: four Markdown tables.
+"""Reliability of the response of `dem-dynamic` to ground motion: four Markdown tables.
 
     PYTHONPATH=. python benchmarks/studies/motion_stability.py [block | contacts | mesh | wall]
 
-The block of 0.5 × 2 m beside Housner's equation, over stiffness of its joint, viscous damping and time step, one at a
-time from those of the suite; its impacts, over the points that bear them; then by `fem`, over its mesh. And a wall of
-12 blocks under one sine and under seconds of noise, at scales around its critical one, each `DRAWS` times with joints
-that are a little different (`SCATTER`): how many fall, and which drifts those have gone through that do not; then where
-each draw begins to fall.
+The first three are for the block of 0.5 × 2 m beside Housner's equation: joint stiffness, viscous damping and time
+step, one varied at a time from the suite's values; impacts, with different numbers of contact points; and the mesh of
+`fem`, also for the wall. The fourth is for a wall of 12 blocks under one sine and under seconds of noise, at peak
+accelerations around the critical one, for `DRAWS` draws with slightly different joints (`SCATTER`): the number of
+falls, the drifts of the walls that stand, and the peak acceleration at which each draw begins to fall.
 """
 
 import math
@@ -32,9 +32,9 @@ FOLLOW = import_module("runningbond.response.follow")
 BLOCK = HousnerBlock()
 UNIT = GRAVITY * BLOCK.b / BLOCK.h
 EDGES = ((0.5, 4, 2.798, 0.12), (1.0, 4, 1.780, 0.12), (1.0, 4, 5.3174, 0.04))
-"""Cycles, ω / p, overturning amplitude of Housner's block in g tan α, and the width in which it is looked for.
+"""Cycles, ω / p, overturning amplitude of Housner's block in g tan α, and relative width of the search around it.
 
-It falls before an impact, after one, and again before one.
+The block overturns before an impact, after one, and again before one.
 """
 
 STIFFNESS, PART = 1e10, float(vars(FOLLOW)["PART"])
@@ -52,19 +52,20 @@ MESHES: dict[str, dict[str, int]] = {
     "`fem`, 4 × 4 cells": {"cells": 4},
     "`fem`, 4 × 4 cells, 8 modes": {"cells": 4, "modes": 8},
 }
-"""Cells along each side of a block, and modes of deformation where not all are taken."""
+"""Cells along each side of a block, and number of modes if not all are included."""
 
 DRAWS, SCATTER = 6, {"stiffness": 0.01, "friction": 0.001}
 PEAKS = {"one sine": [1.08 * 1.04**k for k in range(7)], "4 s of noise": [0.64 * 1.1**k for k in range(10)]}
 FIRST = {"one sine": 1.21, "4 s of noise": 0.81}
-"""Peak acceleration of the ground [g]: of the runs, and about where the wall begins to fall."""
+"""Peak ground accelerations [g] of the runs, and approximate peak acceleration at which the wall begins to fall."""
 
 DEFORMABLE, FARTHER = 1.17, 0.08
-"""The same of walls of rigid blocks and of deformable ones, which fall earlier, and how far from it is looked."""
+"""Approximate peak acceleration [g] at which a wall begins to fall, with rigid or with deformable blocks, which fall
+earlier; and relative width of the search around it."""
 
 
 def on_the_block() -> Iterator[str]:
-    """Errors of the edges, and the largest share of energy that a run at an edge missed."""
+    """Rows: errors of the overturning amplitudes, and the largest unaccounted share of energy in these runs."""
     yield "| setting | falls before an impact | after one | again before | energy missed, at most |"
     yield "|---|---|---|---|---|"
     for name, stiffness, viscous, part in SETTINGS:
@@ -77,13 +78,13 @@ def on_the_block() -> Iterator[str]:
 
 
 def on_contacts() -> Iterator[str]:
-    """First peak under half a sine, and the rate after an impact over that before, of the block on more contacts."""
+    """Rows: first peak under half a sine, and ratio of rotation rates at impacts, for the block on more contacts."""
     yield "| contacts | first peak [α] | rate after an impact over that before |"
     yield "|---|---|---|"
     period, amplitude = math.pi / BLOCK.p, 1.4 * UNIT
     yield f"| Housner's | {BLOCK.peak(amplitude, period, 0.5) / BLOCK.alpha:.3f} | {BLOCK.restitution:.3f} |"
     history, scene = shaken("half-sine", amplitude, period), block(BLOCK.b, BLOCK.h, still())
-    crushing = scene.with_joint(compressive_strength=1e9)  # which it never comes to
+    crushing = scene.with_joint(compressive_strength=1e9)  # never reached
     size = {"block_width": 2 * BLOCK.b, "block_height": 2 * BLOCK.h, "thickness": 0.12}
     laid = rb.Wall.courses([[1]], **size, density=1800.0, friction=2.0).scene
     bonded = replace(laid, joint_materials=scene.joint_materials, load=scene.load)
@@ -95,14 +96,14 @@ def on_contacts() -> Iterator[str]:
         turn = np.arctan2(height, 2 * BLOCK.b + width) / BLOCK.alpha
         swings = np.split(np.abs(turn), np.flatnonzero(np.diff(np.sign(turn))) + 1)
         peaks = [swing.max() for swing in swings if swing.max() > 0.01][:3]
-        # The energy at a turning point is what an impact left of that at the one before.
+        # An impact reduces the energy of one turning point to that of the next.
         left = [math.cos(BLOCK.alpha * (1 - peak)) - math.cos(BLOCK.alpha) for peak in peaks]
         rates = ", ".join(f"{math.sqrt(after / before):.3f}" for before, after in pairwise(left))
         yield f"| {name} | {peaks[0]:.3f} | {rates} |"
 
 
 def on_the_mesh() -> Iterator[str]:
-    """Errors of the edges, and where the wall begins to fall, by models whose blocks deform."""
+    """Rows by mesh: errors of the overturning amplitudes, and peak acceleration at which the wall begins to fall."""
     heads = ("falls before an impact", "after one", "again before", "energy missed, at most", "wall's first fall [g]")
     yield f"| blocks | {' | '.join(heads)} |"
     yield "|---|---|---|---|---|---|"
@@ -117,7 +118,7 @@ def on_the_mesh() -> Iterator[str]:
 
 
 def at_rest(scene: Scene, mesh: dict[str, int] | None) -> Resting:
-    """A scene at rest: rigid blocks, or those of a mesh, of 10 GPa."""
+    """A scene at rest, with rigid blocks or with a mesh of blocks of 10 GPa."""
     if mesh is None:
         return resting(scene)
     blocks = node_outline(with_impacts(scene.with_block(young=1e10, poisson=0.2)), mesh["cells"], mesh.get("modes"))
@@ -125,25 +126,25 @@ def at_rest(scene: Scene, mesh: dict[str, int] | None) -> Resting:
 
 
 def off(rest: Resting, cycles: float, ratio: float, exact: float, width: float, runs: list[Response]) -> str:
-    """How far from Housner's edge the block's is; no other edge is within the width."""
+    """Relative error of the block's overturning amplitude; no other change of the verdict is within the width."""
     history = shaken("sine" if cycles == 1 else "half-sine", UNIT, 2 * math.pi / (ratio * BLOCK.p))
     found = edge(lambda scale: fallen(under(rest, history), scale, runs), exact, width, 3e-3)
     return f"{found / exact - 1:+.1%}" if found else f"over {width:.0%}"
 
 
 def fallen(rest: Resting, scale: float, runs: list[Response]) -> bool:
-    """Whether a wall falls; what it did is kept."""
+    """Whether a wall falls; its response is appended to `runs`."""
     runs.append(follow(rest, scale, rows=50))
     return runs[-1].verdict == "collapse"
 
 
 def under(rest: Resting, history: History) -> Resting:
-    """A wall at rest, with another motion of its ground."""
+    """A wall at rest, with another ground motion."""
     return replace(rest, scene=replace(rest.scene, load=replace(rest.scene.load, live=(history,))))
 
 
 def noise(seconds: float = 4.0, seed: int = 1) -> History:
-    """White noise between 0.5 and 5 Hz under half a sine, of a peak of 1 g."""
+    """White noise between 0.5 and 5 Hz with a half-sine envelope and a peak of 1 g."""
     random = np.random.default_rng(seed)
     time, frequency = np.linspace(0, seconds, 801), np.arange(0.5, 5.0, 1 / seconds)
     phases, sizes = random.uniform(0, 2 * np.pi, len(frequency)), random.normal(size=len(frequency))
@@ -152,7 +153,7 @@ def noise(seconds: float = 4.0, seed: int = 1) -> History:
 
 
 def wall() -> Scene:
-    """Eight courses of a block, or two halves, of 500 × 250 mm."""
+    """A wall of eight courses, alternately one block of 500 × 250 mm and two halves."""
     size = {"block_width": 0.5, "block_height": 0.25, "thickness": 0.3, "density": 2000.0, "friction": 0.7}
     pulse = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 0.5}, "quantity": "g"}
     return rb.Wall.courses(
@@ -161,7 +162,7 @@ def wall() -> Scene:
 
 
 def drawn(scene: Scene, seed: int) -> Resting:
-    """A wall at rest whose joints differ a little."""
+    """A wall at rest, with joint stiffness and friction changed at random within `SCATTER`."""
     stiffer, rougher = 1 + np.array(list(SCATTER.values())) * np.random.default_rng(seed).uniform(-1, 1, 2)
     joint = scene.joint
     assert isinstance(joint.elasticity, Stiffness)
@@ -173,7 +174,7 @@ def drawn(scene: Scene, seed: int) -> Resting:
 
 
 def on_the_wall() -> Iterator[str]:
-    """Falls and peak drifts of the wall and its draws, at scales around the critical one."""
+    """Rows: falls and peak drifts of the draws, at peak accelerations around the critical one."""
     scene = wall()
     rests = [drawn(scene, seed) for seed in range(DRAWS)]
     yield "| motion | peak [g] | fall | peak drift of the others | energy missed, at most |"
@@ -194,7 +195,7 @@ def on_the_wall() -> Iterator[str]:
 
 
 def first(rest: Resting, history: History, about: float, width: float = 0.06) -> str:
-    """Where a wall begins to fall, so near a peak acceleration."""
+    """Peak acceleration at which a wall begins to fall, searched around a given one."""
     found = edge(lambda peak: fallen(under(rest, history), peak, []), about, width, 2e-3)
     return f"{found:.3f}" if found else f"not within {width:.0%} of {about:g}"
 

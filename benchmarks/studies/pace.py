@@ -1,7 +1,7 @@
-"""λ of models in motion over the pace at which loads grow, on walls whose load belongs to a history.
+"""λ of dynamic models against the loading rate, on walls whose collapse load depends on the history.
 
-Prints a Markdown table, a row a pace and model as it ends: in how many times to rest the load grows by its first step,
-and the range of λ over draws of the wall that differ in their last bits.
+Prints a Markdown table, one row per rate and model as it ends: the time of the first load step in units of the time to
+rest, and the range of λ over draws of the wall that differ in their last bits.
 
     python benchmarks/studies/pace.py panel-12
     python benchmarks/studies/pace.py --models dem-dynamic --viscous 0.1 panel-12
@@ -27,7 +27,7 @@ TOLERANCE = 0.005
 
 
 def row(model: str, name: str, loading: float, draws: int, points: PointsOn) -> str:
-    """Cells of a row: lowest, median and highest λ, and the mean number of time steps."""
+    """Cells of a row: lowest, median and highest λ, and mean number of time steps."""
     found, steps = [], 0
     parameters: dict[str, Any] = {"points": points} if model == "fem" else {}
     with patch.object(load_stepping, "LOADING", loading):

@@ -1,8 +1,8 @@
 """Deformable blocks of 1 to 1000 GPa beside rigid ones: walls with inset contacts and arches, brackets and cost.
 
-Prints two Markdown tables, a row a wall and Young's modulus as it ends: time steps in the lowest period of the wall as
-it stands, with the masses of modes scaled each by itself and as `fem` has them, and what the lowest frequency loses by
-that; then brackets, time steps, processor seconds, and the ratio of both models'.
+Prints two Markdown tables, one row per wall and Young's modulus as it ends. First: time steps in the longest period of
+the elastic wall, with mass scaling of each mode by itself and as in `fem`, and the decrease of the lowest frequency by
+the latter. Second: brackets, time steps, processor seconds, and the ratio of the seconds of both models.
 
     python benchmarks/studies/stiff_blocks.py
     python benchmarks/studies/stiff_blocks.py --young 1 100 wall-w1 arch-27
@@ -35,7 +35,7 @@ from runningbond.scene import Scene, scene_from_dict
 
 INSET = 0.02
 ARCHES = {"arch-9": (9, 180.0), "arch-15": (15, 180.0), "arch-21": (21, 120.0), "arch-27": (27, 180.0)}
-"""Voussoirs and the angle [degrees] that they span."""
+"""Number of voussoirs, and the angle [degrees] that they span."""
 
 WALLS = ["wall-w1", "wall-w2", "wall-w3", "wall-w4", *ARCHES]
 YOUNG = [1.0, 10.0, 100.0, 1000.0]
@@ -43,7 +43,7 @@ RADIUS, RING = 2.0, 0.4
 
 
 def arch(voussoirs: int, spanned: float) -> Scene:
-    """An arch of 2 m and 0.4 m on the ground, pushed sideways by its weight."""
+    """An arch of 2 m inner radius, 0.4 m thick, on the ground, under lateral load proportional to its weight."""
     document = ezdxf.new("R2000")  # type: ignore[attr-defined]
     space = document.modelspace()
     rays = np.radians(90 + np.linspace(spanned / 2, -spanned / 2, voussoirs + 1))
@@ -74,19 +74,19 @@ def arch(voussoirs: int, spanned: float) -> Scene:
 
 
 def wall(name: str) -> Scene:
-    """A wall by its name; those of Ferris & Tin-Loi with their contacts farther in."""
+    """A wall by its name; those of Ferris & Tin-Loi have contacts inset by `INSET`."""
     return arch(*ARCHES[name]) if name in ARCHES else published_scene(name).with_joint(inset=INSET)
 
 
 def timed(model: str, scene: Scene) -> tuple[Outcome, float]:
-    """Outcome of a model, and the processor time that it took [s], with one thread as in campaigns."""
+    """Outcome of a model, and its processor time [s], with one thread as in campaigns."""
     with threadpool_limits(1):
         start = time.process_time()
         return run_model(model, scene), time.process_time() - start
 
 
 def steps_in_a_period(run: Run) -> tuple[float, float]:
-    """Time steps of a run in the lowest period, and its frequency [1/s]."""
+    """Number of time steps in the longest period, and its angular frequency [rad/s]."""
     system = run.system
     stiffness, own = elastic_stiffness(system)
     mass, place = np.diag(own), np.cumsum(np.isfinite(system.mass)) - 1
@@ -112,7 +112,7 @@ def periods(names: list[str], moduli: list[float]) -> Iterator[str]:
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("walls", nargs="*", default=WALLS)
     parser.add_argument("--young", nargs="+", type=float, default=YOUNG, help="in GPa")

@@ -1,6 +1,6 @@
-"""Campaigns: every model on every scene, one process a task, each outcome kept as soon as it is there.
+"""Campaigns: every model on every scene, with parallel tasks; each outcome is saved as soon as it is available.
 
-Processes and the workers of a cluster compute and hand over; the campaign alone reads and writes its folder.
+Processes and the workers of a cluster compute and return outcomes; only the campaign reads and writes its folder.
 """
 
 import warnings
@@ -19,23 +19,23 @@ from .tasks import Answer, Cell, ClusterError, Task
 
 @dataclass
 class Campaign:
-    """What a campaign has so far."""
+    """Results of a campaign so far."""
 
     outcomes: dict[Cell, Outcome] = field(default_factory=dict)
     inapplicable: dict[Cell, str] = field(default_factory=dict)  # why a model does not apply to a scene
-    reused: set[Cell] = field(default_factory=set)  # whose outcome was in the folder
+    reused: set[Cell] = field(default_factory=set)  # cells whose outcome was read from the folder
 
     def __len__(self) -> int:
         return len(self.outcomes) + len(self.inapplicable)
 
     @property
     def kept(self) -> int:
-        """Number of outcomes that are in the folder."""
+        """Number of outcomes that are saved in the folder: all that have not failed."""
         return sum(outcome.status != "failed" for outcome in self.outcomes.values())
 
 
 class Interrupted(Exception):
-    """A campaign that stopped before its end, for a reason if not by Ctrl-C; what it has is in the folder."""
+    """A campaign stopped before its end, by Ctrl-C or for the given reason; its results so far are in the folder."""
 
     def __init__(self, campaign: Campaign, reason: str = "") -> None:
         super().__init__(reason or "interrupted")
@@ -44,7 +44,7 @@ class Interrupted(Exception):
 
 @contextmanager
 def ctrl_c_passed_on() -> Iterator[None]:
-    """Raise KeyboardInterrupt, as scripts expect it, for a campaign that Ctrl-C has `Interrupted`."""
+    """Convert `Interrupted` into KeyboardInterrupt, as scripts expect it, if Ctrl-C has stopped a campaign."""
     try:
         yield
     except Interrupted as stopped:
@@ -64,11 +64,11 @@ def run_campaign(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> Campaign:
-    """Run models, all of `MODELS` where none is named, on scenes by name; parameters and errors as of `run_tasks`."""
+    """Run models (by default all of `MODELS`) on named scenes; parameters and errors as in `run_tasks`."""
     chosen = [find_model(model, "models") for model in models or MODELS]
     check_tolerance(tolerance)
     largest_first = sorted(scenes, key=lambda name: -len(scenes[name].blocks))
-    # Dear models stand last in the registry; started first, they do not leave one process working alone.
+    # Expensive models are last in the registry. They start first, so that no process works alone in the end.
     tasks = [Task(name, scenes[name], model, tolerance) for model in reversed(chosen) for name in largest_first]
     return run_tasks(tasks, folder=folder, jobs=jobs, cluster=cluster, fresh=fresh, progress=progress)
 
@@ -82,15 +82,15 @@ def run_tasks(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> Campaign:
-    """Run tasks, each cell one, in their order.
+    """Run tasks in their order, one per cell.
 
     Parameters
     ----------
     folder
-        Where outcomes are kept, as ``folder/scene/model/``. A whole one of the same scene, tolerance and code is
-        reused, unless all are asked for `fresh`. None keeps nothing.
+        Folder for outcomes, as ``folder/scene/model/``. A complete outcome of the same scene, tolerance and code is
+        reused, unless `fresh` is set. None saves nothing.
     jobs
-        Number of processes; −1 is one a core.
+        Number of processes; −1 for one per core.
     cluster
         Address of a Dask scheduler, or its file: tasks go to its workers, which share no folder with this process.
     progress
@@ -99,10 +99,10 @@ def run_tasks(
     Raises
     ------
     SceneError
-        For a number of processes that is none.
+        For an invalid number of processes.
     Interrupted
-        On Ctrl-C, where the folder takes no more or the cluster is lost, with what there is; the same tasks go on
-        from there.
+        On Ctrl-C, or if the folder cannot be written or the cluster is lost, with the results so far. Running the same
+        tasks again resumes from there.
     """
     if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs == 0:
         raise SceneError("jobs", "must be a number of processes, or -1 for one a core", jobs)
@@ -110,7 +110,7 @@ def run_tasks(
     scenes = {task.cell: task.scene for task in tasks}
     try:
         with warnings.catch_warnings(), closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
-            # `Interrupted` says what is left undone, and a worker that has grown large is replaced without a word.
+            # `Interrupted` reports unfinished tasks already, and replacing a worker that uses much memory is harmless.
             warnings.filterwarnings("ignore", ".*(tasks (have been|which were)|worker stopped)", UserWarning, "joblib")
             for answer in answers:
                 cell, outcome = answer.cell, answer.outcome
@@ -118,7 +118,7 @@ def run_tasks(
                     campaign.inapplicable[cell] = answer.reason
                 elif answer.reused:
                     campaign.reused.add(cell)
-                elif folder is not None and outcome.status != "failed":  # which is tried again, perhaps by better code
+                elif folder is not None and outcome.status != "failed":  # failed tasks are run again
                     save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell])
                 if outcome is not None:
                     campaign.outcomes[cell] = outcome
@@ -133,19 +133,19 @@ def run_tasks(
 
 
 def _answers(tasks: Sequence[Task], folder: Path | None, jobs: int, cluster: str | None) -> Generator[Answer]:
-    """Answers that a folder holds, if one is given, then those that are computed, as they come."""
+    """Yield answers from the folder, if there is one, then computed ones as they become available."""
     missing = []
     for task in tasks:
         try:
             outcome, key = (None, "") if folder is None else load_outcome(folder.joinpath(*task.cell))
         except StoreError:
             outcome, key = None, ""
-        if outcome is not None and key == task.key():  # of this very scene, tolerance and code
+        if outcome is not None and key == task.key():  # same scene, model, tolerance and code
             yield Answer(task.cell, outcome, key=key, reused=True)
         else:
             missing.append(task)
     if missing and cluster is not None:
-        from .cluster import on_cluster  # Dask is not always installed
+        from .cluster import on_cluster  # Dask may not be installed
 
         yield from on_cluster(missing, cluster)
     elif missing:

@@ -17,17 +17,17 @@ from .processes import side_by_side
 from .tasks import Answer, ClusterError, Task
 
 NEITHER = "is neither the address of a Dask scheduler nor its file"
-PATIENCE = 30  # seconds in which a scheduler must answer and have a worker
+PATIENCE = 30  # seconds within which a scheduler must answer, and have a worker
 
 
 class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
-    """joblib's backend, which would wait for ever for what a cluster gives up, and not send to one that has one core.
+    """joblib's Dask backend, extended to report tasks that the cluster gives up, and to use clusters with one core.
 
-    A task over which one worker after the other was killed is answered as lost.
+    joblib's own would wait forever for such tasks. A task whose workers were killed in turn is answered as lost.
     """
 
     def effective_n_jobs(self, n_jobs: int) -> int:
-        """Say how many tasks run at once; where that is one, joblib computes in the process that asks."""
+        """Number of tasks that run at once, at least 2: for 1, joblib would compute in the calling process."""
         return max(2, int(super().effective_n_jobs(n_jobs)))
 
     def submit(self, func: Any, callback: Callable[[Any], None]) -> Any:
@@ -45,7 +45,7 @@ class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
         return sent
 
     def retrieve_result_callback(self, out: Any) -> Any:
-        """Take in what came back: results, or why there are none."""
+        """Return the results that came back, or raise the error that came instead."""
         if isinstance(out, CancelledError):
             raise ClusterError("the connection to its scheduler is lost")
         if isinstance(out, BaseException):
@@ -54,10 +54,10 @@ class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
 
 
 def scheduler_address(where: str) -> str:
-    """The address of a scheduler, by itself or by the file that it has written; a `SceneError` for what is neither."""
+    """Address of a scheduler, given as an address or as the scheduler's file; a `SceneError` if it is neither."""
     try:
         address = json.loads(Path(where).read_bytes())["address"] if Path(where).is_file() else where
-        if ":" not in address:  # no port: a client would try for a minute to go there, and another to give that up
+        if ":" not in address:  # no port: a client would try to connect for a minute, and need another to give up
             raise ValueError(address)
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise SceneError("--cluster", NEITHER, where) from error
@@ -65,9 +65,9 @@ def scheduler_address(where: str) -> str:
 
 
 def on_cluster(tasks: Sequence[Task], where: str) -> Iterator[Answer]:
-    """Answers as they come, from a cluster by its scheduler's address or file; a `SceneError` if it has no worker."""
+    """Yield answers from the cluster whose scheduler's address or file is `where`; a `SceneError` without a worker."""
     keys = {task.cell: task.key() for task in tasks}
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are reported here, in a line
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # errors are reported here, in one line
     address = scheduler_address(where)
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)

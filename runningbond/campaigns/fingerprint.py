@@ -1,4 +1,4 @@
-"""What an outcome was computed from, as one digest: scene, model, tolerance, code and numerical libraries."""
+"""Fingerprint of an outcome's origin, as one digest: scene, model, tolerance, code and numerical libraries."""
 
 import ast
 import hashlib
@@ -25,34 +25,34 @@ COMPUTING_ROOMS = (  # packages in which a change can change a number
     *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics", "response")),
     *("meshing", "fem_interface", "dem", "homog", "runningbond.models"),
 )
-PLAIN = (bool, int, float, complex, str, bytes, tuple, np.ndarray)
-"""Values outside of code without a file that it is known by, beside its own."""
+PLAIN_TYPES = (bool, int, float, complex, str, bytes, tuple, np.ndarray)
+"""Types of global values that are included for a user's code that is in no file."""
 PACKAGES = {room.partition(".")[0] for room in COMPUTING_ROOMS}
 LIBRARY_FOLDERS = {"site-packages", "dist-packages"}
-"""Where libraries lie: a user's own files lie elsewhere."""
+"""Folders of installed libraries; all other files are the user's own."""
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh", "clarabel", "highspy")
 
 
 def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
-    """Digest under which the outcome of a model, or one of the package's own by its name, on a scene is kept."""
+    """Digest under which the outcome of a model on a scene is saved; a name stands for one of the package's models."""
     digest = hashlib.sha256(code_digest().encode())
     if isinstance(model, Model):
         own = _own_code(model.solve)
-        loads = (*scene.load.live, *scene.load.dead) if own else ()  # of which it may read whatever it likes
+        loads = (*scene.load.live, *scene.load.dead) if own else ()  # a user's model may read anything of them
         digest.update(own + b"".join(_own_code(type(load)) for load in loads))
-        if own or getattr(model.solve, "keywords", None):  # of the package's own none is known by more than its name
+        if own or getattr(model.solve, "keywords", None):  # for the package's models the name suffices
             _feed_given(digest, model.solve)
         model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
     for value in (scene, scene.dead_forces, scene.live_forces, scene.control_point):
-        _feed(digest, value)  # of a user's own load, what it does as well
+        _feed(digest, value)  # forces and control point: for a user's own load, its effect is included
     return digest.hexdigest()
 
 
 def _own_code(given: Callable[..., Any]) -> bytes:
-    """The file of a function or class and a user's files that it imports, or its compiled code where it is in none.
+    """Source file of a function or class with the user's files that it imports, or its compiled code without a file.
 
-    Nothing where `code_digest` has it.
+    Empty for code that `code_digest` includes.
     """
     function: Any = getattr(given, "func", given)
     function = getattr(function, "__func__", function)
@@ -69,7 +69,7 @@ def _own_code(given: Callable[..., Any]) -> bytes:
 
 
 def _own_files(module: str) -> bytes:
-    """The files of a user's module and of those that they import, each once; nothing of the package or a library."""
+    """Content of a user's module and of the user's modules that it imports, each once; no package or library files."""
     found: dict[str, bytes] = {}
     _add_file(module, found)
     return b"".join(found.values())
@@ -84,11 +84,11 @@ def _add_file(module: str, found: dict[str, bytes]) -> None:
 
 
 def _file(module: str) -> Path | None:
-    """The file of a user's module; found without loading it, so that it is the same before and after that."""
+    """File of a user's module, or None; found without importing it, so that the result does not depend on imports."""
     if module.partition(".")[0] in ("", "__main__", *sys.stdlib_module_names, *PACKAGES):
         return None
     spec = None
-    with suppress(ImportError, ValueError, AttributeError):  # there is none of the name, or it has no place
+    with suppress(ImportError, ValueError, AttributeError):  # no module of this name, or one without location
         spec = find_spec(module)
     if spec is None or not spec.has_location or not (spec.origin or "").endswith(".py"):
         return None
@@ -98,20 +98,20 @@ def _file(module: str) -> Path | None:
 
 @cache
 def _imported(source: bytes, package: str) -> tuple[str, ...]:
-    """Names of what may be modules among all that a file imports, wherever in it."""
+    """Names of possible modules among all imports anywhere in a file."""
     names = list[str]()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            with suppress(ImportError):  # beyond the package
+            with suppress(ImportError):  # a relative import beyond the package
                 name = resolve_name("." * node.level + (node.module or ""), package)
                 names += [name, *(f"{name}.{alias.name}" for alias in node.names)]
     return tuple(names)
 
 
 def _is_in_file(function: Any) -> bool:
-    """Whether other processes find a function or class by its name, in a module: else they are sent its code alone."""
+    """Whether other processes can import a function or class by name from a module; else they receive its code only."""
     module = sys.modules.get(function.__module__)
     found: Any = module
     for name in function.__qualname__.split("."):
@@ -120,7 +120,7 @@ def _is_in_file(function: Any) -> bool:
 
 
 def _code(code: Any) -> tuple[Any, ...]:
-    """Compiled code as what it says, that of functions within it too, and a user's files that it imports."""
+    """Content of compiled code and of functions inside it, with the user's files that it imports."""
     if not hasattr(code, "co_code"):
         return ("", code)
     imported = [_own_files(each.argval) for each in get_instructions(code) if each.opname == "IMPORT_NAME"]
@@ -128,14 +128,14 @@ def _code(code: Any) -> tuple[Any, ...]:
 
 
 def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ()) -> None:
-    """Add what something that is called was given beside its code: defaults, what it is closed over, fields, settings.
+    """Add the data of a callable, in addition to its code: defaults, closure variables, fields, bound arguments.
 
-    Of code in no file also the plain values, the functions, and a user's modules and classes that it names.
+    For code in no file, also add the plain global values, functions, and a user's modules and classes that it names.
     """
     if id(given) in seen:
         return
     seen = (*seen, id(given))
-    given = _as_written(given)
+    given = _python_function(given)
     if isinstance(given, partial):
         _feed_values(digest, (*given.args, *sorted((given.keywords or {}).items())), seen)
         _feed_given(digest, given.func, seen)
@@ -145,7 +145,7 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
         named = [
             (name, x)
             for name, x in outside.items()
-            if isinstance(x, PLAIN) or inspect.isfunction(_as_written(x)) or _is_own(x)
+            if isinstance(x, PLAIN_TYPES) or inspect.isfunction(_python_function(x)) or _is_own(x)
         ]
         _feed_values(
             digest, (*defaults, *sorted(closure.nonlocals.items()), *sorted(named, key=lambda pair: pair[0])), seen
@@ -156,23 +156,23 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
         _feed_values(digest, tuple(sorted(getattr(given, "__dict__", {}).items())), seen)
 
 
-def _as_written(given: Any) -> Any:
-    """The function that something compiled by numba was written as; all else as it is."""
+def _python_function(given: Any) -> Any:
+    """The Python function of a function compiled by numba; anything else as it is."""
     return getattr(given, "py_func", given)
 
 
 def _is_own(value: Any) -> bool:
-    """Whether a value is a user's module, or a class of one."""
+    """Whether a value is a user's module, or a class defined in one."""
     return (inspect.ismodule(value) or inspect.isclass(value)) and _file(_module_of(value)) is not None
 
 
 def _module_of(value: Any) -> str:
-    """Name of a module, or of that of a class."""
+    """Name of a module, or of the module of a class."""
     return str(value.__name__ if inspect.ismodule(value) else value.__module__)
 
 
 def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[int, ...]) -> None:
-    """Add values, and what those that are called, or say nothing of themselves, are made of."""
+    """Add values, and the code and data of callables and of objects whose repr shows only their address."""
     for value in values:
         if isinstance(value, tuple):
             _feed_values(digest, value, seen)
@@ -180,9 +180,9 @@ def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[i
         if inspect.isclass(value) or inspect.ismodule(value):
             digest.update(value.__name__.encode() + _own_files(_module_of(value)))
             continue
-        value = _as_written(value)
+        value = _python_function(value)
         _feed(digest, value)
-        if _says_nothing(value):
+        if _repr_is_address(value):
             if inspect.isfunction(value):
                 digest.update(_own_code(value))
             _feed_given(digest, value, seen)
@@ -190,7 +190,7 @@ def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[i
 
 @cache
 def code_digest() -> str:
-    """Digest of every source file that can change a number, and of the libraries' versions."""
+    """Digest of every source file that can change a result, and of the versions of numerical libraries."""
     digest = hashlib.sha256(" ".join(f"{name} {version(name)}" for name in LIBRARIES).encode())
     for room in COMPUTING_ROOMS:
         folder = Path(str(import_module(room).__file__)).parent
@@ -200,7 +200,7 @@ def code_digest() -> str:
 
 
 def _feed(digest: "hashlib._Hash", value: object) -> None:
-    """Add a value to a digest: what it says, never where it lies in memory."""
+    """Add a value to a digest, by its content and never by its memory address."""
     if isinstance(value, Law):
         digest.update(repr(value.identity).encode())
         _feed_own_functions(digest, value)
@@ -217,22 +217,22 @@ def _feed(digest: "hashlib._Hash", value: object) -> None:
         for name in [entry.name for entry in fields(value)] if is_dataclass(value) else sorted(vars(value)):
             digest.update(name.encode())
             _feed(digest, getattr(value, name))
-    elif _says_nothing(value):  # in a load, which is known by what it does
+    elif _repr_is_address(value):  # in a load, whose effect (forces, control point) is included
         digest.update(f"{type(value).__name__} {getattr(value, '__qualname__', '')}".encode())
     else:
         digest.update(repr(value).encode())
 
 
 def _feed_own_functions(digest: "hashlib._Hash", law: Law) -> None:
-    """Add what a user's functions of a law call, which its identity does not know."""
+    """Add the code of a user's functions in a law, which the law's identity does not include."""
     for entry in fields(law):
-        given = _as_written(getattr(law, entry.name))
+        given = _python_function(getattr(law, entry.name))
         own = _own_code(given) if callable(given) else b""
         if own:
             digest.update(own)
             _feed_given(digest, given)
 
 
-def _says_nothing(value: object) -> bool:
-    """Whether a value is told by where it lies in memory."""
+def _repr_is_address(value: object) -> bool:
+    """Whether the repr of a value may show its memory address in place of its content."""
     return type(value).__repr__ is object.__repr__ or callable(value)

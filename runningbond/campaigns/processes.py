@@ -1,4 +1,4 @@
-"""The tasks of a campaign side by side: in processes of this machine, or wherever joblib has been set to send them."""
+"""Parallel execution of a campaign's tasks: in processes on this machine, or by the joblib backend that is set."""
 
 import multiprocessing
 import multiprocessing.resource_tracker
@@ -17,13 +17,13 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from .tasks import Answer, Task
 
-PATIENCE = 1.0
-"""Seconds after which a process looks whether its parent is still there."""
+POLL_INTERVAL = 1.0
+"""Interval at which a process checks that its parent still exists [s]."""
 
 
 def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
-    """Answers as they come, from wherever joblib has been set to send its tasks."""
-    # All of them at once, for the sake of workers that join a cluster later.
+    """Yield answers as they become available, from the joblib backend that is set."""
+    # All tasks are dispatched at once, so that workers that join a cluster later get some.
     run = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="all")
     with _interruptions_held():
         answers = run(delayed(Task.run)(task) for task in tasks)
@@ -32,9 +32,9 @@ def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
 
 @contextmanager
 def _interruptions_held() -> Iterator[None]:
-    """Hold Ctrl-C back from processes that start, which inherit the mask, where the system knows masks.
+    """Block Ctrl-C in processes started in this context: they inherit the signal mask, if the system has one.
 
-    It reaches all of a terminal's processes, and the parent ends the others.
+    Ctrl-C reaches all processes of a terminal, but the parent is to end the others.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
@@ -47,7 +47,7 @@ def _interruptions_held() -> Iterator[None]:
 
 
 def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
-    """Answers as they come, from `jobs` processes; −1 is one a core, and 1 this process itself."""
+    """Yield answers as they become available, from `jobs` processes; −1 for one per core, 1 for this process itself."""
     left = {task.cell: task for task in tasks}
     try:
         with _processes(jobs, len(tasks)):
@@ -55,7 +55,7 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
                 del left[answer.cell]
                 yield answer
     except TerminatedWorkerError:
-        # A process was killed, over which task is not said: what is left goes one by one, the cheapest first.
+        # A process was killed by an unknown task: the remaining tasks run one by one, the cheapest first.
         for task in reversed(left.values()):
             try:
                 with _processes(2, 1):
@@ -66,7 +66,7 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
 
 @contextmanager
 def _processes(jobs: int, tasks: int) -> Iterator[None]:
-    """Have joblib run some tasks in processes of their own, or in this one where there is to be only one."""
+    """Set joblib to run a number of tasks in `jobs` separate processes, or in this process if `jobs` is 1."""
     if jobs != 1:
         try:
             multiprocessing.Lock()
@@ -79,36 +79,36 @@ def _processes(jobs: int, tasks: int) -> Iterator[None]:
         return
     if hasattr(signal, "pthread_sigmask"):
         for tracker in (multiprocessing.resource_tracker, loky_tracker):
-            tracker.ensure_running()  # its start unblocks what `side_by_side` blocks (loky's until joblib 1.6)
-    # More processes than cores or tasks take memory and gain nothing; joblib takes one for none.
+            tracker.ensure_running()  # its start unblocks signals that `side_by_side` blocks (loky's until joblib 1.6)
+    # More processes than cores or tasks only cost memory. At least 2: with 1, joblib starts no process.
     n_jobs = min(cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count())), max(2, tasks))
     with parallel_config(backend="loky", n_jobs=n_jobs, initializer=partial(begin, os.getpid())), _quiet_kill():
         yield
 
 
 def begin(parent: int) -> None:
-    """Leave what ends a process that has just started to its parent, of that number; end with it, however it ends.
+    """Make a new process ignore Ctrl-C, and end when the process with the number `parent` has ended.
 
-    Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say. One
-    that is killed says nothing, and its processes would go on to the end of their tasks.
+    Ctrl-C reaches every process of the terminal, but only the parent should react: it ends the others. If the parent is
+    killed it cannot do so, and its processes would continue to the end of their tasks.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
 
 
 def _end_after(parent: int) -> None:
-    """End this process once it has another parent; on Windows it keeps the number of the one it had."""
+    """End this process once its parent has changed; on Windows this never happens, as it keeps the parent's number."""
     while os.getppid() == parent:
-        time.sleep(PATIENCE)
+        time.sleep(POLL_INTERVAL)
     os._exit(1)
 
 
 @contextmanager
 def _quiet_kill() -> Iterator[None]:
-    """Do not print the error with which loky's manager thread ends when it is to kill its workers.
+    """Suppress the error with which loky's manager thread ends when it has to kill its workers.
 
-    It drops the tasks that wait, kills the workers, and then fills their queue once more, with the numbers of the
-    tasks that it has just dropped (`add_call_item_to_queue`): a KeyError that says nothing.
+    The thread drops the waiting tasks, kills the workers, and then refills their queue with the numbers of the tasks
+    that it has just dropped (`add_call_item_to_queue`), which raises a meaningless KeyError.
     """
     report = threading.excepthook
 

@@ -1,4 +1,4 @@
-"""The tasks of a campaign: one model on one scene each, and what it says."""
+"""The tasks of a campaign, each one model on one scene, and their answers."""
 
 import signal
 import threading
@@ -17,28 +17,28 @@ from .fingerprint import fingerprint
 
 Cell: TypeAlias = tuple[str, str]  # name of a scene and of a model
 INTERRUPTIONS = signal.SIGINT, signal.SIGTERM
-"""Signals that end work before its end: Ctrl-C, and a scheduler's."""
+"""Signals that interrupt work: Ctrl-C, and a job scheduler's."""
 _ONE_AT_A_TIME = threading.Lock()
 
 
 class ClusterError(Exception):
-    """A cluster that does not do what it is asked; the message says why."""
+    """A failure of a cluster; the message gives the reason."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What one model said of one scene: an outcome, or why it does not apply."""
+    """Result of one model for one scene: an outcome, or the reason why the model does not apply."""
 
     cell: Cell
-    outcome: Outcome | None  # None where the model does not apply
-    reason: str = ""  # why it does not
-    key: str = ""  # fingerprint of what it was computed from, taken where that was done
-    reused: bool = False  # whether it was read from the folder and not computed
+    outcome: Outcome | None  # None if the model does not apply
+    reason: str = ""  # why the model does not apply
+    key: str = ""  # fingerprint of the input and code, taken by the process that computed
+    reused: bool = False  # whether the outcome was read from the folder and not computed
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """One model to be run on one scene, which is called by a name."""
+    """One model to be run on one named scene."""
 
     name: str
     scene: Scene
@@ -51,7 +51,7 @@ class Task:
         return self.name, self.model.name
 
     def key(self) -> str:
-        """Fingerprint under which its outcome is kept, by the sources and libraries of this process."""
+        """Fingerprint under which the outcome is saved, from the sources and libraries of this process."""
         return fingerprint(self.scene, self.model, self.tolerance)
 
     def run(self) -> Answer:
@@ -61,13 +61,13 @@ class Task:
             with (
                 _interruptions_kept(),
                 _ONE_AT_A_TIME,
-            ):  # also in a worker with threads: gmsh and those of linear algebra are there once
+            ):  # a lock for workers with threads: gmsh and linear algebra libraries exist once per process
                 return Answer(self.cell, self._outcome(), key=key)
         except SceneError as reason:
             return Answer(self.cell, None, str(reason).removeprefix(f"model {self.model.name}: "), key)
 
     def _outcome(self) -> Outcome:
-        """The outcome, with moments of the collapse where the model follows it."""
+        """The outcome, with moments (frames) of the collapse if the model has an observer."""
         if self.model.observer is None:
             return run_model(self.model, self.scene, self.tolerance)
         recorder = self.model.observer(self.scene, None)
@@ -78,14 +78,14 @@ class Task:
         return with_moments(self.scene, outcome, recorder.frames)
 
     def lost(self) -> Answer:
-        """The answer where processes were killed over it."""
+        """The answer for a task whose process was killed."""
         outcome = Outcome(self.scene.title, self.model.name, "failed", message="its process was killed (memory?)")
         return Answer(self.cell, outcome)
 
 
 @contextmanager
 def _interruptions_kept() -> Iterator[None]:
-    """Raise KeyboardInterrupt in the end where a model took it for a sign to end with what it had."""
+    """Raise KeyboardInterrupt in the end if an interruption only made the model return what it had found so far."""
     before = {number: signal.getsignal(number) for number in INTERRUPTIONS}
     heard, seen = {number: each for number, each in before.items() if callable(each)}, list[int]()
     if not heard or threading.current_thread() is not threading.main_thread():

@@ -1,1 +1,1 @@
-"""The commands of ``runningbond``; `runningbond.commands.command_line` is where they meet."""
+"""The commands of ``runningbond``; `runningbond.commands.command_line` combines them."""

@@ -1,4 +1,4 @@
-"""``runningbond advise``: a line a rung, then the answer; or one JSON object."""
+"""``runningbond advise``: one line per rung, then the answer; or one JSON object."""
 
 import json as to_json
 import sys
@@ -23,12 +23,12 @@ def advise(
     finite: Flag = False,
     json: Json = False,
 ) -> int:
-    """Answer with the cheapest models that a scene needs, and say why each was or was not run.
+    """Find the collapse load with the cheapest models that a scene needs, and say why each was or was not run.
 
     Parameters
     ----------
     finite
-        Follow the wall at finite displacements in the end, however small they may be.
+        Follow the wall at finite displacements in the end, even if displacements are small.
     """
     check_tolerance(tolerance, "--tolerance")
     advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))

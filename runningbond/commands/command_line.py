@@ -1,4 +1,4 @@
-"""The command line: where the commands of ``runningbond`` meet, and what becomes of their errors."""
+"""The command line of ``runningbond``: all commands, and the handling of their errors."""
 
 import io
 import os
@@ -38,19 +38,19 @@ app.register_install_completion_command()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and leave with its exit code."""
+    """Run the command line and exit with its exit code."""
     signals = interruptions()
     try:
         code = command(arguments)
     except Exception:
         if not signals:
             raise
-        code = _stopped()  # within an import or a callback, libraries make another error of it
+        code = _stopped()  # within an import or a callback, libraries turn the KeyboardInterrupt into another error
     sys.exit(code)
 
 
 def command(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; bad input is one line on standard error and exit code 2."""
+    """Run the command line; bad input yields one line on standard error and exit code 2."""
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
@@ -60,12 +60,12 @@ def command(arguments: Sequence[str] | None = None) -> int:
         result = app(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
-        return _left_with(f"{' '.join(error.unused_tokens or ())}: is more than this command takes", BAD_INPUT)
+        return _left_with(f"{' '.join(error.unused_tokens or ())}: is not an argument of this command", BAD_INPUT)
     except (SceneError, StoreError, CycloptsError) as error:
         return _left_with(str(error), BAD_INPUT)
     except VtkError as error:
         return _left_with(str(error), NO_ANSWER)
-    except BrokenPipeError:  # whoever read us has seen enough
+    except BrokenPipeError:  # the reader has closed the pipe
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return DONE
     except OSError as error:
@@ -76,7 +76,7 @@ def command(arguments: Sequence[str] | None = None) -> int:
 
 
 def _check_backend() -> None:
-    """Refuse a backend that matplotlib does not know, before anything is computed that is to be drawn in the end."""
+    """Refuse a backend that matplotlib does not have, before results are computed that could not be drawn."""
     backend = os.environ.get("MPLBACKEND")
     if backend:
         try:
@@ -91,6 +91,6 @@ def _stopped() -> int:
 
 
 def _left_with(message: str, code: int) -> int:
-    """Say a line on standard error, and give the exit code back."""
+    """Print a line on standard error, and return the exit code."""
     say(message)
     return code

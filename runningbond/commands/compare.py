@@ -24,7 +24,7 @@ from .terminal import (
     print_table,
     progress_bar,
     remarks,
-    told_interruption,
+    report_interrupt,
 )
 
 
@@ -39,22 +39,22 @@ def compare(
 ) -> int:
     """Run models on scenes and tabulate them beside the published values.
 
-    Results are kept as they come: an interrupted comparison goes on where it was.
+    Every result is stored as soon as it is available; an interrupted comparison continues from there.
 
     Parameters
     ----------
     scenes
-        Scene files or names; all published walls where none is given.
+        Scene files or names; all published walls if none is given.
     models
-        Names of models, separated by commas; all of them where none is given.
+        Names of models, separated by commas; all models if none is given.
     out
         Folder for results, tables and charts.
     jobs
-        Number of processes; -1 is one a core.
+        Number of processes; -1 for one per core.
     cluster
         Run on the workers of a Dask cluster: the address of its scheduler, such as tcp://host:8786, or its file.
     fresh
-        Compute again what is already there.
+        Compute again results that are already stored.
     """
     names = list(MODELS) if models is None else [name.strip() for name in models.split(",")]
     chosen = [find_model(name, "--models") for name in dict.fromkeys(names)]
@@ -88,11 +88,11 @@ def compare(
                 progress=lambda cell: advance(", ".join(cell)),
             )
     except Interrupted as stopped:
-        return told_interruption(stopped, total, "cases", out, fresh=fresh)
-    with locked(out):  # what is written is of one comparison, where two end at once
+        return report_interrupt(stopped, total, "cases", out, fresh=fresh)
+    with locked(out):  # if two comparisons end at once, all files are from one of them
         _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     for (name, model), reason in campaign.inapplicable.items():
-        if name not in published:  # of which it is known
+        if name not in published:  # for published walls this is documented
             print(f"note: {name}, {model}: {reason}", file=sys.stderr)
     failed = [(cell, outcome.message) for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for cell, message in failed:
@@ -113,7 +113,7 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
             raise SceneError(scene, f'is the second scene called "{name}"; results are kept by file name')
         try:
             walls[name] = read_scene(path)
-        except SceneError as error:  # which of the files
+        except SceneError as error:  # add the name of the file
             key = error.key if error.key.startswith(str(path)) else f"{path}: {error.key}"
             raise SceneError(key, error.remedy, error.value) from error
         case = published_case(path)
@@ -135,7 +135,7 @@ def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     print(f"{counted(len(campaign), 'case')}, {len(campaign.reused)} of them already in {out}")
     charts = figures.charts_of(comparison.only_published())
     pictures = figures.draw_figures(charts, out) + plates.draw_plates(comparison, out)
-    if is_used:  # an earlier comparison's, of walls that are not in this one
+    if is_used:  # remove pictures of an earlier comparison with other walls
         for older in {out / name for name in (*figures.FILES, *plates.FILES)}.difference(pictures):
             older.unlink(missing_ok=True)
     write_atomically(out / "report.html", report_html(comparison, charts, tolerance).encode())

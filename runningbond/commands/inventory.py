@@ -1,4 +1,4 @@
-"""What a scene holds, in rows of a table: counts, weights, supports, ties, and loads with their resultants."""
+"""Contents of a scene as rows of a table: counts, weights, supports, ties, and loads with their resultants."""
 
 from collections.abc import Iterator
 
@@ -26,7 +26,7 @@ Row = tuple[str, str]
 
 
 def rows(scene: Scene) -> list[Row]:
-    """Everything there is to say of a scene in numbers, each with its unit."""
+    """Rows for all quantities of a scene, with their units."""
     assigned = ((key, text) for key, _, text in (line.partition(": ") for line in scene.assigned))
     return [*_blocks(scene), *_joints(scene), *_held(scene), *_loads(scene), *assigned]
 
@@ -47,7 +47,7 @@ def _blocks(scene: Scene) -> Iterator[Row]:
     yield "extent", f"x {x} m, y {y} m, {thickness_text(scene)}"
     yield "mass of the wall", f"{float(scene.mass[scene.wall].sum()):.5g} kg"
     gravity = float(np.hypot(*scene.load.gravity))
-    yield "weight of what moves", readable(gravity * float(scene.mass[~scene.fixed].sum()), "N")
+    yield "weight of movable blocks", readable(gravity * float(scene.mass[~scene.fixed].sum()), "N")
 
 
 def _mass(scene: Scene, mass: float) -> str:
@@ -71,7 +71,7 @@ def _joints(scene: Scene) -> Iterator[Row]:
 
 
 def _held(scene: Scene) -> Iterator[Row]:
-    """Supports, the beam and ties."""
+    """Rows for supports, the beam and ties."""
     ground = int((~scene.wall).sum())
     held = [f"ground in {counted(ground, 'piece')}" if ground > 1 else "ground"] if ground else []
     held += [counted(int((scene.wall & scene.fixed).sum()), "fixed block")] if (scene.wall & scene.fixed).any() else []
@@ -99,7 +99,7 @@ def _held(scene: Scene) -> Iterator[Row]:
 
 
 def _body(scene: Scene, block: int) -> str:
-    """What a block is called, or what an end of a tie is in."""
+    """Name of the body at an end of a tie: a block with its number, the beam, the ground, or an anchor."""
     if block == ANCHOR:
         return "an anchor fixed in space"
     number = scene.part_of[block]
@@ -107,7 +107,7 @@ def _body(scene: Scene, block: int) -> str:
 
 
 def _loads(scene: Scene) -> Iterator[Row]:
-    """Each load with its resultant, and what all live ones come to."""
+    """Rows for each load with its resultant, and for the resultant of all live loads."""
     x, y = scene.load.gravity
     yield "gravity", f"({minus(x)}, {minus(y)}) m/s²"
     corner = scene.blocks.extent(scene.wall)[0]
@@ -122,7 +122,7 @@ def _loads(scene: Scene) -> Iterator[Row]:
 
 
 def _resultant(scene: Scene, forces: Forces, corner: Array) -> str:
-    """Force and moment about a point that forces put on what moves."""
+    """Resultant force on all blocks that move, and its moment about a point."""
     loose = ~scene.fixed
     on_mass = scene.mass[:, None] * forces.acceleration * loose[:, None]
     own = loose[forces.block]
@@ -135,7 +135,7 @@ def _resultant(scene: Scene, forces: Forces, corner: Array) -> str:
 
 
 def _kind(scene: Scene, load: Action) -> str:
-    """What kind of load it is, in words."""
+    """Kind of a load, in words."""
     match load:
         case BeamLoad():
             path = scene.drive_path if load.key == "beam.drive" else ()

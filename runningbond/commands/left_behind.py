@@ -1,4 +1,4 @@
-"""Files that commands leave in a folder, of which the next one there replaces all."""
+"""Files that commands write to a result folder; the next command with the same folder replaces all of them."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -16,7 +16,7 @@ DRAWS = "draws"
 
 @contextmanager
 def own_folder(folder: Path | None) -> Iterator[None]:
-    """Have a folder for this command alone, made where it is missing; what is made for a refused scene goes again."""
+    """Create and lock a folder for one command; if the scene is refused, newly created folders are removed."""
     if folder is None:
         yield
         return
@@ -27,21 +27,21 @@ def own_folder(folder: Path | None) -> Iterator[None]:
         yield
     except SceneError:
         for path in made:
-            with suppress(OSError):  # somebody else has used it since
+            with suppress(OSError):  # another process has used it since
                 path.rmdir()
         raise
 
 
 def holds_results(folder: Path | None) -> bool:
-    """Whether a command has left an outcome or a time series in a folder: else all files there are somebody's own."""
+    """Whether a folder holds an outcome or a time series of a command; otherwise all its files belong to the user."""
     return folder is not None and any((folder / name).exists() for name in (RECORD, *(f"{kind}.pvd" for kind in KINDS)))
 
 
 def remove_older(folder: Path, *, record: bool = False) -> None:
-    """Remove what an older command left beside a time series, which is replaced frame by frame; its outcome as well.
+    """Remove the files of an older command, except its time series, which is replaced frame by frame.
 
-    An outcome that is replaced by another stays until that is written, and a ``response.csv`` without its chart is
-    somebody's own.
+    The older outcome is removed only if `record`; otherwise it stays until the new one is written. A ``response.csv``
+    without its chart belongs to the user and stays.
     """
     from runningbond.pictures.render import PICTURES
 

@@ -19,14 +19,14 @@ def mesh(
     out: Annotated[Path, Parameter(name=("--out", "-o"))],
     cells: Whole = 1,
 ) -> int:
-    """Write a finite-element mesh of a wall, its joints as elements without thickness.
+    """Write a finite-element mesh of a wall, with joints as zero-thickness elements.
 
     Parameters
     ----------
     out
         File to write, .msh or .vtu.
     cells
-        Cells in half a block along the course, and in a block's height.
+        Number of cells in half a block along the course, and in the height of a block.
     """
     check_suffix(out)
     wall = read_scene(find_scene(scene))

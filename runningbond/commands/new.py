@@ -18,7 +18,7 @@ def new(file: Path, /) -> int:
     Parameters
     ----------
     file
-        Where to write it; a file that is there already is left alone.
+        File to write; an existing file is never overwritten.
     """
     if file.suffix.lower() != ".toml":
         raise SceneError("FILE", "must end in .toml", str(file))

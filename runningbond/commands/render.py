@@ -12,7 +12,7 @@ from runningbond.scene import SceneError
 from .terminal import DONE, NO_ANSWER, Flag, can_draw
 
 LISTED = 6
-"""Folders that a refusal names."""
+"""Largest number of folders that an error message lists."""
 
 
 def render(
@@ -22,20 +22,20 @@ def render(
     colour: Colouring = "displacement",
     view: Flag = False,
 ) -> int:
-    """Draw what a result folder has to show: its collapse mechanism, and of a time series the last moment and a film.
+    """Draw the contents of a result folder: its collapse mechanism, and the last moment and a film of a time series.
 
-    The mechanism is drawn flat, as vectors too, and painted by PyVista, as moments are.
+    The mechanism is drawn in 2D, also as vector graphics, and by PyVista, which also draws the moments.
 
     Parameters
     ----------
     folder
-        Folder of one outcome or response: that of run --out or respond --out, or scene/model in that of compare.
+        Folder of one outcome or response: the --out folder of run or respond, or scene/model in that of compare.
     colour
-        Colour painted blocks by displacement or by course.
+        Colour of the blocks in pictures by PyVista: by displacement or by course.
     view
-        Open a window instead, where there is a screen.
+        Open a window instead of writing files; needs a screen.
     """
-    _check(folder)  # refused before anything is tried
+    _check(folder)  # before anything is drawn
     if view:
         if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
             raise SceneError("--view", "needs a screen; without it pictures are written")
@@ -54,7 +54,7 @@ def render(
 
 
 def _check(folder: Path) -> None:
-    """Refuse a folder without an outcome or a response; where folders in it have one, the line names them."""
+    """Refuse a folder without an outcome or a response; the message lists inner folders that have one, if any."""
     records = (RECORD, RESPONSE_RECORD)
     holds = any((folder / name).is_file() for name in records)
     inner = [] if holds else sorted({path.parent for name in records for path in folder.rglob(name)})

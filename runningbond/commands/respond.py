@@ -35,15 +35,15 @@ def respond(
     json: Json = False,
     out: Path | None = None,
 ) -> int:
-    """Follow a wall through the motion of its ground, and say whether it stands.
+    """Compute the response of a wall to ground motion, and say whether it stands.
 
     Parameters
     ----------
     model
         Name of the model.
     out
-        Folder in which to keep the response as a table and as a chart, and its time series for ParaView, of which
-        render makes a film.
+        Folder for the response as a table and as a chart, and for its time series for ParaView, from which render
+        makes a film.
     """
     from runningbond.pictures.progress import ResponseProgress
 
@@ -76,13 +76,13 @@ def respond(
                 written = (RESPONSE_RECORD, *RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
                 print("\n".join(str(out / name) for name in written))
         elif is_new:
-            with suppress(OSError):  # somebody else has used it since
+            with suppress(OSError):  # another process has used it since
                 out.rmdir()
     return NO_ANSWER if response.verdict == "undecided" else DONE
 
 
 def _keep(response: "Response", wall: "Scene", out: Path) -> None:
-    """Write a response of a wall as a table, draw both, and vouch for them."""
+    """Write the response of a wall as a table and a chart, and the record of the response with the scene."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.response import response_figure
 

@@ -35,19 +35,19 @@ from .terminal import (
     Whole,
     check_jobs,
     interruptions,
+    print_cost,
     print_table,
     progress_bar,
     progress_line,
     remarks,
-    tell_cost,
-    told_interruption,
+    report_interrupt,
 )
 
 OPTIONS = {"number": "--draws", "scatter": "--scatter"}
-"""What draws are asked for with on the command line, by their names in Python."""
+"""Command-line options for draws, by the names of the parameters in Python."""
 
 FLAG = "--"
-"""What stands before the names of options."""
+"""Prefix of the names of options."""
 
 
 def run(
@@ -64,29 +64,29 @@ def run(
     scatter: str | None = None,
     jobs: Whole | None = None,
 ) -> int:
-    """Run one model on one scene, once or as often as draws are asked for.
+    """Run one model on one scene, once or for a number of draws.
 
     Parameters
     ----------
     model
         Name of the model.
     displacements
-        Whether the wall keeps the shape it was built in, or dem-dynamic or fem follows it as far as a beam that is
-        driven by displacements, or a support that moves, leads it, or live loads push it past their peak.
+        With small ones, equilibrium is that of the undeformed wall. With finite ones, dem-dynamic or fem follow the
+        deformed wall as far as a driven beam or a moving support goes, or as live loads push it past their peak.
     distance
-        How far live loads push it [m], read where displacements are; until they have fallen to nothing, or else by the
-        wall's smaller side, where none is given.
+        Displacement of the control point up to which live loads push the wall [m], only if displacements are finite;
+        by default the smaller side of the wall. The push ends earlier if the loads fall to zero.
     out
-        Folder in which to keep the result, its time series for ParaView, its curve with all reactions as a table and
-        as a picture, and a picture of its mechanism.
+        Folder for the result, its time series for ParaView, its curve with all reactions as a table and as a picture,
+        and a picture of its mechanism.
     draws
-        Number of runs: of the wall as it is, and of walls beside it that differ in nothing that is known. What is kept
-        in --out is that of the first, and all of them in a folder of it, where the same command goes on.
+        Number of runs: of the wall as it is, and of copies that differ from it within the scatter. The result in --out
+        is that of the first; a folder in it keeps all draws, from which the same command continues.
     scatter
-        What differs between draws: bits, the last ones; or size=0.01,friction=0.05, a relative tolerance of blocks and
-        the standard deviation of the logarithm of each joint's friction, or one of them.
+        What differs between draws: bits, the last bits of numbers; or size=0.01,friction=0.05, a relative tolerance of
+        block sizes and the standard deviation of the logarithm of each joint's friction, or only one of these.
     jobs
-        Number of processes for draws; -1, the default, is one a core.
+        Number of processes for draws; -1, the default, for one per core.
     """
     chosen = going_far(find_model(model, "--model"), displacements, distance, FLAG)
     check_tolerance(tolerance, "--tolerance")
@@ -103,15 +103,15 @@ def run(
         recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
         progress = _progress(chosen, wall)
         observers = [each for each in (recorder, progress) if each is not None]
-        tell_cost(chosen, wall, tolerance)
+        print_cost(chosen, wall, tolerance)
         with progress_line(chosen.name, progress.line if progress else None):
             outcome = run_model(chosen, wall, tolerance, Together(observers) if observers else None)
-    for line in remarks(wall):  # not before: a scene that the model refuses is one line
+    for line in remarks(wall):  # after the run: if the model refuses the scene, only that line is printed
         print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
     if out is not None:
         remove_older(out)
-        # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
+        # An interrupted result has no fingerprint, and therefore no comparison reuses it.
         save_outcome(outcome, out, "" if stopped else fingerprint(wall, chosen, tolerance), wall)
         _picture(wall, outcome, out, recorder, json)
     if stopped:
@@ -120,7 +120,7 @@ def run(
 
 
 def _progress(model: Model, wall: Scene) -> Progress | None:
-    """What looks at a run and says how far it has come, if anything does."""
+    """Observer that reports the progress of a run; None if the model has none."""
     if wall.history is None:
         return model.progress() if model.progress else None
     from runningbond.pictures.progress import ResponseProgress
@@ -130,7 +130,7 @@ def _progress(model: Model, wall: Scene) -> Progress | None:
 
 @contextmanager
 def _as_options() -> Iterator[None]:
-    """Name what draws refuse after the options that it was given by."""
+    """Replace parameter names by option names in errors about draws."""
     try:
         yield
     except SceneError as error:
@@ -143,7 +143,7 @@ def _as_options() -> Iterator[None]:
 def _draws(
     wall: Scene, model: Model, number: int, scatter: str, tolerance: float, jobs: int, out: Path | None, json: bool
 ) -> int:
-    """Run a model on draws of a wall, and print and keep what came of them."""
+    """Run a model on draws of a wall, and print and store the results; returns the exit code."""
     check_jobs(jobs)
     folder, bar = None if out is None else out / DRAWS, (f"{model.name}, draws", number)
     with _as_options():
@@ -152,7 +152,7 @@ def _draws(
         with own_folder(out), own_folder(folder), progress_bar(*bar) as advance, _as_options():
             found = sampling.run(tolerance, folder, jobs, advance)
     except Interrupted as stopped:
-        return told_interruption(stopped, number, "draws", folder)
+        return report_interrupt(stopped, number, "draws", folder)
     for line in remarks(wall):
         print(line, file=sys.stderr)
     outcome = found.outcomes[0]
@@ -171,7 +171,7 @@ def _draws(
 
 
 def _picture(wall: Scene, outcome: Outcome, out: Path, recorder: Recorder | None, json: bool) -> None:
-    """Write and draw what there is to see of an outcome, and say what was written."""
+    """Write the time series and pictures of an outcome, and print the files written."""
     if recorder is None:
         from runningbond.pictures.recording import record_mechanism
 
@@ -184,7 +184,7 @@ def _picture(wall: Scene, outcome: Outcome, out: Path, recorder: Recorder | None
 
 
 def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
-    """Write and draw the curve and the mechanism."""
+    """Write the curve as a table, and draw the curve and the mechanism."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.curve import curve_figure
     from runningbond.pictures.render import draw_folder
@@ -199,7 +199,7 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
 
 
 def _written(out: Path) -> list[Path]:
-    """What a run has left in its folder."""
+    """Files that a run has written to its folder."""
     series = (*(f"{kind}.pvd" for kind in KINDS), MACRO)
     names = (RECORD, ARRAY_FILES, f"{DRAWS}.json", *CURVE_FILES, *series, "mechanism.*")
     return [path for name in names for path in sorted(out.glob(name))]

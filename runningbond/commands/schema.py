@@ -8,6 +8,6 @@ from .terminal import DONE
 
 
 def schema() -> int:
-    """Print the JSON schema of scene files, with which editors complete and check them."""
+    """Print the JSON schema of scene files, which editors use to complete and check them."""
     print(json.dumps(scene_schema(), indent=2, allow_nan=False))
     return DONE

@@ -23,19 +23,19 @@ def show(
     out: Annotated[Path | None, Parameter(name=("--out", "-o"))] = None,
     numbers: Flag = False,
 ) -> int:
-    """Show a wall before any analysis: what it is made of, what holds it, what loads it and what it weighs.
+    """Show a wall before any analysis: its blocks, materials, supports, loads and weight.
 
     Parameters
     ----------
     out
         Picture to write, .svg or .png: blocks and joints by material, supports, ties, and loads with their sizes.
     numbers
-        Write into each block of the picture, which --out names, the number by which `assign` knows it.
+        Write into each block of the picture given by --out its number, as used by `assign`.
     """
     if out is not None and out.suffix.lower() not in VECTOR:
         raise SceneError("--out", "must end in .svg or .png", str(out))
     if numbers and out is None:
-        raise SceneError("--numbers", "needs a picture to stand in; name one with --out")
+        raise SceneError("--numbers", "needs a picture to write into; name one with --out")
     wall = read_scene(find_scene(scene))
     if out is not None:
         write_atomically(out, VECTOR[out.suffix.lower()](figure_of(wall, numbers=numbers)))

@@ -1,4 +1,4 @@
-"""``runningbond stability`` and ``runningbond study``, whose measurements are kept as they come."""
+"""``runningbond stability`` and ``runningbond study``; every measurement is stored as soon as it is made."""
 
 import signal
 import sys
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 def stability(*experiments: str, out: Path = Path("stability")) -> int:
-    """Drive every method over its edge, and tell where each may be trusted.
+    """Drive every method beyond its limit, and report where each may be trusted.
 
-    What is measured is kept as it comes: an interrupted command goes on where it was.
+    Every measurement is stored as soon as it is made; an interrupted command continues from there.
 
     Parameters
     ----------
     experiments
-        Names of experiments; all where none is given.
+        Names of experiments; all experiments if none is given.
     out
         Folder for tables, charts and the report.
     """
@@ -41,7 +41,7 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
     make_folder(out)
     studies = [experiment(name) for name in EXPERIMENTS]
     try:
-        # What is complete comes along, also where others are asked for.
+        # Complete experiments are included in the page even if only others are requested.
         included = [each for each in studies if each.name in (experiments or EXPERIMENTS) or is_complete(each, out)]
         rows = _measured(included, out, "stability")
     except Stopped:
@@ -55,16 +55,16 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
 
 
 def study(*, out: Path = Path("study"), jobs: Whole = 1) -> int:
-    """Measure every model and its parameters on walls whose answer is known: error against cost.
+    """Measure error and cost of every model and its parameters on walls whose answer is known.
 
-    Measurements are kept as they come: an interrupted study goes on where it was.
+    Every measurement is stored as soon as it is made; an interrupted study continues from there.
 
     Parameters
     ----------
     out
         Folder for the table, the charts and the page.
     jobs
-        Number of processes side by side; with more than one, seconds are worth less.
+        Number of processes in parallel; with more than one, the measured seconds are less reliable.
     """
     if jobs < 1:
         raise SceneError("--jobs", "must be a number of processes, 1 or more", jobs)
@@ -86,13 +86,13 @@ def study(*, out: Path = Path("study"), jobs: Whole = 1) -> int:
 
 
 class Stopped(BaseException):
-    """Ctrl-C in the middle of a study: not a KeyboardInterrupt, which a model would take for its own end."""
+    """Ctrl-C during a study; not a KeyboardInterrupt, because a model would end its own run with that."""
 
 
 def _measured(
     studies: Sequence["Study"], out: Path, description: str, jobs: int = 1
 ) -> "list[tuple[Study, dict[str, list[Row]]]]":
-    """Rows of studies, measured where they are not kept; `Stopped` by Ctrl-C or SIGTERM."""
+    """Rows of studies, measured unless they are stored; Ctrl-C or SIGTERM raises `Stopped`."""
     from runningbond.studies.store import run_study
 
     def stop(number: int, frame: object) -> None:
@@ -113,7 +113,7 @@ def _interrupted(kept: str) -> int:
 
 
 def _exit_code(wrong: Sequence[str]) -> int:
-    """Print what went wrong, and say whether anything did."""
+    """Print the errors; returns the exit code."""
     for words in wrong:
         print(words, file=sys.stderr)
     return NO_ANSWER if wrong else DONE

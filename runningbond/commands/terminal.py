@@ -1,4 +1,4 @@
-"""What commands share: exit codes, arguments, tables, a progress bar, and Ctrl-C."""
+"""Common parts of the commands: exit codes, arguments, tables, a progress bar, and Ctrl-C."""
 
 import os
 import signal
@@ -28,17 +28,17 @@ from runningbond.scene.plausibility import warnings
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 """Exit codes of every command."""
 
-LONG = 30.0
-"""Expected seconds of a run before which they are told."""
+LONG_RUN = 30.0
+"""Expected seconds from which on they are printed before a run."""
 
 PATIENCE, REFRESH = 2.0, 0.25
-"""Seconds after which a computation says how far it has come, and between two lines."""
+"""Seconds until the progress line of a computation first appears, and between two updates."""
 
 INTERVAL = 30.0
-"""Seconds between two lines of progress in a file."""
+"""Least seconds between two lines of progress if standard error is no terminal."""
 
 UNDECIDED = ("undecided", "failed")
-"""Statuses of outcomes that are no answer."""
+"""Statuses of outcomes without an answer."""
 
 
 def _whole(_: type, tokens: Sequence[Token]) -> int:
@@ -56,19 +56,19 @@ Whole: TypeAlias = Annotated[int, Parameter(converter=_whole)]
 
 
 def check_jobs(jobs: int) -> None:
-    """Refuse what is no number of processes."""
+    """Refuse an invalid number of processes."""
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
 
 
 def say(message: str) -> None:
-    """Say a line on standard error, if that takes any."""
+    """Print a line on standard error, unless it is closed."""
     with suppress(OSError):
         print(f"runningbond: {' '.join(message.split())}", file=sys.stderr, flush=True)
 
 
-def told_interruption(stopped: Interrupted, total: int, what: str, folder: Path | None, *, fresh: bool = False) -> int:
-    """Say on standard error why a campaign stopped, and how much of the total is kept in a folder; the exit code."""
+def report_interrupt(stopped: Interrupted, total: int, what: str, folder: Path | None, *, fresh: bool = False) -> int:
+    """Print why a campaign stopped and how many results are stored, on standard error; returns the exit code."""
     kept = "nothing is kept without --out"
     if folder is not None:
         again = "the same command without --fresh" if fresh else "the same command"
@@ -80,7 +80,7 @@ def told_interruption(stopped: Interrupted, total: int, what: str, folder: Path 
 
 
 def print_table(sheet: Sheet) -> None:
-    """Print a table as wide as the terminal, or as a page where there is none."""
+    """Print a table as wide as the terminal, or 180 characters wide if there is none."""
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     table = Table(title=Text(sheet.title), title_justify="left")
     for head in sheet.heads:
@@ -91,7 +91,7 @@ def print_table(sheet: Sheet) -> None:
 
 
 def can_draw() -> bool:
-    """Whether this machine can draw with VTK; where it cannot, a line says why."""
+    """Whether this machine can draw with VTK; if not, the reason is printed."""
     why_not = why_not_drawn()
     if why_not:
         print(f"runningbond: {why_not}", file=sys.stderr)
@@ -99,16 +99,16 @@ def can_draw() -> bool:
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """What is to be said of a scene before anything is computed: what its drawing left out, what looks like a slip."""
+    """Notes on a scene, such as parts of its drawing that were left out, and warnings about implausible values."""
     return (*(f"note: {line}" for line in scene.notes), *(f"warning: {line}" for line in warnings(scene)))
 
 
-def tell_cost(model: Model, scene: Scene, tolerance: float) -> None:
-    """Say on a terminal what a long run is expected to cost."""
+def print_cost(model: Model, scene: Scene, tolerance: float) -> None:
+    """Print the expected time of a long run, on a terminal only."""
     if model.cost is None or not sys.stderr.isatty():
         return
     expected = estimate(model, scene, tolerance)
-    if expected.seconds >= LONG:
+    if expected.seconds >= LONG_RUN:
         keeps = "what is proved by then" if model.kind in ("bound", "certificate") else "what it has reached by then"
         hint = f"; Ctrl-C leaves {keeps}" if model.interruptible else ""
         print(f"{model.name}: {expected}{hint}", file=sys.stderr, flush=True)
@@ -116,9 +116,9 @@ def tell_cost(model: Model, scene: Scene, tolerance: float) -> None:
 
 @contextmanager
 def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
-    """A bar with what was done last, how much is done, and for how long; to be called with what is done.
+    """Show a progress bar with the last case, the number of cases and the time; call what it yields after each case.
 
-    Lines now and then where standard error is no terminal.
+    If standard error is no terminal, lines are printed at intervals instead.
     """
     if not sys.stderr.isatty():
         yield _progress_lines(description, total)
@@ -130,7 +130,7 @@ def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]
 
 
 def _progress_lines(description: str, total: int) -> Callable[[str], None]:
-    """What a bar shows, as lines for a file: one at once, then at most one in an interval, and one at the end."""
+    """Print the content of the bar as lines: one at once, at most one per `INTERVAL`, and one at the end."""
     start = told = time.perf_counter()
     count = 0
 
@@ -150,26 +150,26 @@ def _progress_lines(description: str, total: int) -> Callable[[str], None]:
 
 
 class Together:
-    """One observer of a run in place of several."""
+    """Several observers of a run as one."""
 
     def __init__(self, observers: Sequence[Callable[..., None]]) -> None:
         self.observers = observers
 
     def __call__(self, *seen: object) -> None:
-        """Let all look."""
+        """Call all observers."""
         for observer in self.observers:
             observer(*seen)
 
     def turn_to(self, other: str) -> "Together":
-        """Those of them that look at another run as well, of a name, for the same answer."""
+        """Observers for another model that is run for the same answer: those that have ``turn_to``."""
         return Together([observer.turn_to(other) for observer in self.observers if hasattr(observer, "turn_to")])
 
 
 @contextmanager
 def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
-    """How long a computation has taken, and what is told of it, in a line on the terminal until it is done.
+    """Show the time of a computation, and the text of `told`, in a line on the terminal until it is done.
 
-    It is rewritten, from a thread of its own; nothing is written where standard error is no terminal.
+    A thread of its own updates the line; nothing is written if standard error is no terminal.
     """
     if not sys.stderr.isatty():
         yield
@@ -185,7 +185,7 @@ def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
         if pause == REFRESH:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
-    # A daemon: Ctrl-C ends a linear program at once, whatever its line.
+    # A daemon thread, because it must not delay the exit if Ctrl-C ends a linear program.
     thread = threading.Thread(target=rewrite, daemon=True)
     thread.start()
     try:
@@ -196,21 +196,21 @@ def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
 
 
 def interruptions(model: Model | None = None) -> list[int]:
-    """Interruptions from here on: a model that can be interrupted ends with what it has reached so far.
+    """Handle interruptions from here on; returns a list that collects the signals received.
 
-    They come by Ctrl-C, or by SIGTERM as a scheduler's time runs out. The second one ends the program at once, as the
-    first does where a model cannot be interrupted; while HiGHS is at work neither is heard before its linear program
-    is done.
+    A signal is Ctrl-C, or SIGTERM at the end of a scheduler's time limit. After the first, an interruptible model ends
+    with what it has found so far. The second ends the program at once, as does the first if the model cannot be
+    interrupted. While HiGHS runs, signals take effect only when its linear program is done.
     """
     signals: list[int] = []
 
     def stop(number: int, frame: object) -> None:
         signals.append(number)
         listen(signal.SIG_DFL)
-        if model is not None and sys.stderr.isatty():  # a proof for 100 000 blocks takes minutes
+        if model is not None and sys.stderr.isatty():  # the model may take minutes to end
             told = f"\r\x1b[K{model.name}: ends with what it has by now; Ctrl-C again ends it at once\n"
             with suppress(OSError):
-                os.write(2, told.encode())  # a signal may come while a line is printed, in which no other may be
+                os.write(2, told.encode())  # print is not reentrant, and a signal may arrive during a print
         raise KeyboardInterrupt
 
     def listen(handler: Callable[[int, object], None] | signal.Handlers) -> None:

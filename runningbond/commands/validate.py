@@ -20,8 +20,8 @@ from .terminal import (
     check_jobs,
     print_table,
     progress_bar,
+    report_interrupt,
     say,
-    told_interruption,
 )
 
 
@@ -34,24 +34,24 @@ def validate(
     fresh: Flag = False,
     json: Json = False,
 ) -> int:
-    """Predict walls that were tested, and score the predictions beside two formulas worked out by hand.
+    """Predict walls that were tested, and score the predictions beside two hand formulas.
 
-    Results are kept as they come: an interrupted command goes on where it was. A wall that is described wrongly is
-    refused in a line, and the others are predicted.
+    Every result is stored as soon as it is available; an interrupted command continues from there. A wall with an
+    invalid description is refused in one line, and the others are predicted.
 
     Parameters
     ----------
     data
-        Folder of tested walls, instead of those that are shipped: tests.csv, and NAME.csv, NAME.toml and
-        NAME-cracks.png where there are such.
+        Folder of tested walls, instead of the shipped ones: tests.csv, and optionally NAME.csv, NAME.toml and
+        NAME-cracks.png.
     out
         Folder for results, charts and the page.
     models
-        Names of models of the laboratory, separated by commas; all of them where none is given.
+        Names of models of the laboratory, separated by commas; all models if none is given.
     jobs
-        Number of processes; -1 is one a core.
+        Number of processes; -1 for one per core.
     fresh
-        Compute again what is already there.
+        Compute again results that are already stored.
     """
     from runningbond.laboratory.folder import SHIPPED, read_folder, unused
     from runningbond.laboratory.ladder import find_rungs
@@ -70,7 +70,7 @@ def validate(
     if not walls:
         return BAD_INPUT
     for name in (name for folder in folders for name in unused(folder)):
-        print(f"note: {name} is of no wall in the table", file=sys.stderr)
+        print(f"note: {name} belongs to no wall in the table", file=sys.stderr)
     make_folder(out)
     total = len(walls) * len(rungs)
     try:
@@ -79,7 +79,7 @@ def validate(
                 walls, rungs, scenes, out, jobs=jobs, fresh=fresh, progress=lambda cell: advance(", ".join(cell))
             )
     except Interrupted as stopped:
-        return told_interruption(stopped, total, "cases", out, fresh=fresh)
+        return report_interrupt(stopped, total, "cases", out, fresh=fresh)
     with locked(out):
         written = write_laboratory(predictions, out, refused)
     sums = totals(predictions)
@@ -90,7 +90,7 @@ def validate(
     else:
         for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):
             print_table(sheet)
-        print("\n".join(verdicts(sums)).replace("**", ""))  # marks of the page
+        print("\n".join(verdicts(sums)).replace("**", ""))  # bold marks of the page
         kept = f"{counted(total, 'case')}, {len(campaign.reused)} of them already in {out}"
         print(f"{kept}; written: {written[0]}, {written[1]}")
     if refused:

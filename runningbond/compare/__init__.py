@@ -1,4 +1,4 @@
-"""Models beside each other: published walls, tables, charts, reports and advice."""
+"""Comparison of models: published walls, tables, charts, reports and advice."""
 
 from .published import PUBLISHED, published_scene
 

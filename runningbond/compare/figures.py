@@ -21,7 +21,7 @@ from .published import BARALDI, CONCENTRATED, FERRIS, PublishedCase, cases_of
 from .table import Comparison
 
 FRICTION = 0.6
-TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b/a, block width to height, and b/a
+TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # label and value of b/a, block width over height
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
 TITLES = {
@@ -29,22 +29,22 @@ TITLES = {
     CONCENTRATED: "Pushover curves under a concentrated load (cf. Baraldi et al., Fig. 11)",
     FERRIS: "Pushover curves of Ferris & Tin-Loi's walls",
 }
-BORNE, BETWEEN = 0.25, 40  # share of its peak from which a curve is drawn, and points between two of its own
-MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
+CURVE_START, SUBDIVISIONS = 0.25, 40  # share of the peak load at which a drawn curve begins; divisions per segment
+MULTIPLIERS = (0, 0.66)  # range of the λ axis in charts of the twelve panels
 CURVES = {"figure-7": BARALDI, "figure-11": CONCENTRATED, "curves-ferris": FERRIS}
 FILES = ("figure-6.csv", *(f"{name}.png" for name in ("figure-6", "table-2", *CURVES)))
-"""Files of all charts."""
+"""File names of all charts."""
 
 
 def figure_6_data() -> tuple[Array, Array]:
-    """Slenderness H / L from 0, without it, to 3, ``(n,)``, and λ of the homogenised panel by texture, ``(n, 4)``."""
+    """Slenderness H / L in (0, 3], ``(n,)``, and λ of the homogenised panel for each texture, ``(n, 4)``."""
     slenderness = np.linspace(0, 3, 121)[1:]
     slopes = [crack_slope(ratio, 1.0, FRICTION) for _, ratio in TEXTURES]
     return slenderness, np.array([[lateral_multiplier(float(r), x, FRICTION) for x in slopes] for r in slenderness])
 
 
 def charts_of(comparison: Comparison) -> dict[str, Figure]:
-    """Every chart that a comparison of published walls has something for, by the names of their files."""
+    """Draw every chart for which a comparison of published walls has data; keys are file names without suffix."""
     charts = {}
     present = [any(comparison.outcome(case.name, x) for x in comparison.models) for case in cases_of(BARALDI)]
     if any(present):
@@ -59,7 +59,7 @@ def charts_of(comparison: Comparison) -> dict[str, Figure]:
 
 
 def draw_figures(charts: Mapping[str, Figure], folder: Path) -> list[Path]:
-    """Write charts, and with Figure 6 its data; the files."""
+    """Write charts, with the data of Figure 6 if it is among them; returns the files written."""
     written = []
     if "figure-6" in charts:
         rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
@@ -75,7 +75,7 @@ def draw_figures(charts: Mapping[str, Figure], folder: Path) -> list[Path]:
 def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> Figure:
     figure = Figure(figsize=(7, 4.6), layout="constrained")
     axes = figure.add_subplot()
-    aside = ("bottom", "center", "top", "center")  # three end close together
+    aside = ("bottom", "center", "top", "center")  # the labels of three curves are close together
     for (label, _), colour, column, side in zip(TEXTURES, CHART_COLOURS[:4], multiplier.T, aside, strict=True):
         axes.plot(slenderness, column, color=colour)
         axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=side, color=DARK, annotation_clip=False)
@@ -97,7 +97,7 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
 
 
 def table_2(comparison: Comparison) -> Figure:
-    """Chart of the multipliers of Table 2: what is printed beside what each model gives."""
+    """Draw the multipliers of Table 2: printed values beside the result of each model."""
     title = "Collapse multipliers of the twelve panels (cf. Baraldi et al., Table 2)"
     figure, columns = panel_figure(title, xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.5))
     shifts = np.linspace(-0.41, 0.41, len(PRINTED) + len(comparison.models))
@@ -118,17 +118,17 @@ def table_2(comparison: Comparison) -> Figure:
     looks += [(model.name, model.colour, model.marker) for model in comparison.models]
     handles = [Line2D([], [], color=c, marker=m, ms=5, mew=1.5, ls="none", label=label) for label, c, m in looks]
     if hollow:
-        label = "hollow: no collapse load found, what is known alone"
+        label = "hollow: no collapse load found, only a bound"
         handles.append(Line2D([], [], color="0.3", marker="o", mfc="white", ms=5, mew=1, ls="none", label=label))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     return figure
 
 
 def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
-    """Curves of the walls of one source, each with a dot at its end; of loads in kN where λ is a load in newtons.
+    """Draw pushover curves of the walls of one source, each with a dot at its end; loads in kN if λ is in newtons.
 
-    Displacements are logarithmic, from where a wall bears a share of its load: the elastic range is seen as well.
-    A level line is drawn for each model that only estimates the multiplier of the twelve panels.
+    The displacement axis is logarithmic, which shows the elastic range as well; curves begin at a share of their peak
+    load. For each model that only estimates the multiplier of the twelve panels, a horizontal line is drawn.
     """
     panels, point_load = source == BARALDI, source == CONCENTRATED
     where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
@@ -183,7 +183,7 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
 
 
 def wall_curves(comparison: Comparison, name: str) -> Figure | None:
-    """Pushover curves of one wall by all models that follow its path, each to its end; None where there is none."""
+    """Draw the pushover curves of one wall by all models that follow a loading path; None if there is no curve."""
     found = {x: outcome.curve for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
     curves = {model: _sampled(curve) for model, curve in found.items() if len(curve) > 1}
     if not any(map(len, curves.values())):
@@ -201,26 +201,26 @@ def wall_curves(comparison: Comparison, name: str) -> Figure | None:
 
 
 def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:
-    """Pushover curve of a wall by a model, ``(n, 2)``; empty where there is none."""
+    """Pushover curve of a wall by a model, ``(n, 2)``; empty if there is none."""
     outcome = comparison.outcome(case.name, model)
     return np.zeros((0, 2)) if outcome is None else outcome.curve
 
 
 def _sampled(curve: Array) -> Array:
-    """A curve with points between those it has, without its beginning, where it bears less than `BORNE` of its peak."""
+    """Subdivide the segments of a curve and cut off its beginning, below `CURVE_START` of its peak load."""
     if len(curve) < 2:
         return curve[:0]
     at = np.arange(len(curve))
-    fine = np.linspace(0, len(curve) - 1, BETWEEN * (len(curve) - 1) + 1)
+    fine = np.linspace(0, len(curve) - 1, SUBDIVISIONS * (len(curve) - 1) + 1)
     dense = np.column_stack([np.interp(fine, at, column) for column in curve.T])
-    borne = (dense[:, 1] >= BORNE * dense[:, 1].max()) & (dense[:, 0] > 0)
+    borne = (dense[:, 1] >= CURVE_START * dense[:, 1].max()) & (dense[:, 0] > 0)
     return dense[int(borne.argmax()) :][dense[int(borne.argmax()) :, 0] > 0]
 
 
 def panel_figure(
     title: str, shown: Sequence[int] = (0, 1, 2), *, xlabel: str, ylabel: str, xlim: tuple[float, float]
 ) -> tuple[Figure, list[tuple[Axes, tuple[PublishedCase, ...]]]]:
-    """A figure of the twelve panels: axes for each slenderness that is shown, and the four panels that stand there."""
+    """Make a figure for the twelve panels: axes for each slenderness shown, each with its four panels."""
     width = (6.4, 8.5, 11.0)[len(shown) - 1]
     figure, panels = Figure(figsize=(width, 4.5), layout="constrained"), cases_of(BARALDI)
     figure.suptitle(title, fontsize=11)

@@ -1,4 +1,4 @@
-"""HTML pages that hold everything and need nothing from anywhere, filled in from the templates beside this file."""
+"""Self-contained HTML pages, without external files, filled in from the templates beside this file."""
 
 import base64
 import io
@@ -18,31 +18,31 @@ from runningbond.pictures.sheet import Sheet
 
 @cache
 def templates() -> Environment:
-    """The templates of pages, which escape what is filled in."""
+    """Page templates, which escape the text that is filled in."""
     return Environment(loader=PackageLoader("runningbond.compare"), autoescape=True, trim_blocks=True)
 
 
 def page_html(subject: str, parts: Sequence[str], contents: Sequence[tuple[str, str]] = ()) -> str:
-    """One page of parts, with contents: identifiers of headings, and what they are called there."""
+    """Assemble a page from parts; `contents` lists identifiers of headings and their entries in the contents."""
     marked = [Markup(part) for part in parts]
     return templates().get_template("page.html").render(subject=subject, parts=marked, contents=contents)
 
 
 def table_html(sheet: Sheet, wrapped: bool = False, folded: bool = False) -> str:
-    """A table under its title; its cells hold sentences where `wrapped`; a click opens one that is `folded`."""
+    """A table below its title; `wrapped` if its cells hold sentences, `folded` if it opens by a click."""
     parts: Any = templates().get_template("parts.html").module
     return str(parts.table(sheet, wrapped, folded))
 
 
 def figure_html(path: Path, caption: str) -> str:
-    """A PNG file, in the page itself, over what it shows."""
+    """A PNG file, embedded in the page, above its caption."""
     data = base64.b64encode(path.read_bytes()).decode()
     image = '<figure><img alt="{1}" src="data:image/png;base64,{0}"><figcaption>{1}</figcaption></figure>'
     return str(Markup(image).format(data, caption))
 
 
 def inline_svg(figure: Figure, title: str) -> Markup:
-    """A chart as an ``svg`` element: words as words, long lines in tenths of a point, no identifiers of groups."""
+    """A chart as an ``svg`` element: text as text, long paths rounded to 0.1 point, no identifiers of groups."""
     buffer = io.StringIO()
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": title}):
         figure.savefig(buffer, format="svg", metadata={"Date": None}, transparent=True)

@@ -1,4 +1,4 @@
-"""Plates of a campaign: collapse mechanisms, walls by models; the paper's Figures 8 to 10 and 12."""
+"""Plates of a campaign: collapse mechanisms, walls by models, with the paper's Figures 8 to 10 and 12."""
 
 import textwrap
 from collections.abc import Sequence
@@ -16,20 +16,20 @@ from .figures import SLENDERNESS, TEXTURES
 from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 
-OWN_WALLS = 12  # largest number of walls on the plate of one's own
+OWN_WALLS = 12  # largest number of walls on the plate of the user's own walls
 
 
 @dataclass(frozen=True)
 class Plate:
-    """Walls whose mechanisms stand side by side."""
+    """Walls whose mechanisms are drawn side by side."""
 
-    name: str  # of the file
+    name: str  # file name without suffix
     title: str
-    walls: dict[str, str]  # and what each is called
+    walls: dict[str, str]  # labels of the walls by their names
 
 
 def _published_plates() -> list[Plate]:
-    """The papers' plates, whole."""
+    """The plates of the papers, with all their walls."""
     textures = [f"b/a = {label}" for label, _ in TEXTURES]
     panels, loaded, ferris = ([case.name for case in cases_of(x)] for x in (BARALDI, CONCENTRATED, FERRIS))
     paper = []
@@ -44,11 +44,11 @@ def _published_plates() -> list[Plate]:
 
 PAPER, OWN = _published_plates(), Plate("mechanisms", "Mechanisms", {})
 FILES = tuple(f"{plate.name}.png" for plate in (*PAPER, OWN))
-"""Files of all plates."""
+"""File names of all plates."""
 
 
 def plates(comparison: Comparison) -> list[Plate]:
-    """Plates that a comparison has anything for: the paper's, and one of walls that are in no figure of it."""
+    """Plates for which a comparison has a mechanism: those of the papers, and one of the user's own walls."""
     own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
     present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in PAPER]
     present.append(replace(OWN, walls={name: name for name in own}))
@@ -56,7 +56,7 @@ def plates(comparison: Comparison) -> list[Plate]:
 
 
 def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
-    """Draw every plate that a comparison has anything for."""
+    """Draw every plate for which a comparison has a mechanism; returns the files written."""
     written = []
     for plate in plates(comparison):
         models = _models(comparison, plate)
@@ -67,16 +67,16 @@ def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
 
 
 def _models(comparison: Comparison, plate: Plate) -> list[Model]:
-    """Models that have a mechanism of any wall of a plate."""
+    """Models that found a mechanism for at least one wall of a plate."""
     outcomes = {model: [comparison.outcome(name, model) for name in plate.walls] for model in comparison.models}
     return [model for model, own in outcomes.items() if any(x is not None and len(x.motion) for x in own)]
 
 
 def _row(comparison: Comparison, name: str, label: str, models: Sequence[Model]) -> PlateRow:
-    """One wall by all models: what is drawn, and its captions."""
+    """Row of a plate: the shape of one wall by each model, with captions."""
     scene = comparison.scenes[name]
 
-    def caption(outcome: Outcome) -> str:  # the load, its bracket, and what is wrong with the mechanism, if anything
+    def caption(outcome: Outcome) -> str:  # load, bracket, and a warning about the mechanism, if any
         lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 26)]
         return "\n".join(filter(None, lines))
 

@@ -17,9 +17,9 @@ FERRIS = "Ferris & Tin-Loi (2001): dry walls under lateral load"
 class PublishedCase:
     """A published wall."""
 
-    name: str  # that of its scene file without the ending
-    source: str  # where it was published; cases of one source share a table
-    printed: dict[str, float] = field(default_factory=dict)  # values printed for it, by what the table calls them
+    name: str  # name of its scene file without the suffix
+    source: str  # publication; cases of one source share a table
+    printed: dict[str, float] = field(default_factory=dict)  # published values by their column heads in the tables
 
     @property
     def path(self) -> Path:
@@ -41,11 +41,11 @@ PUBLISHED: tuple[PublishedCase, ...] = (  # sixteen panels of Baraldi, Reccia & 
 )
 
 FURTHER = tuple(PublishedCase(f"wall-w{k}", FERRIS) for k in (4, 5, 6))
-"""Walls with more openings, by their names; `runningbond compare` runs them where they are asked for."""
+"""Walls with more openings; `runningbond compare` runs them only if they are requested by name."""
 
 
 def cases_of(source: str) -> tuple[PublishedCase, ...]:
-    """Cases of one source, in the order in which they were published."""
+    """Cases of one source, in the order of publication."""
     return tuple(case for case in PUBLISHED if case.source == source)
 
 
@@ -55,12 +55,12 @@ def published_scene(name: str) -> Scene:
 
 
 def published_case(path: Path) -> PublishedCase | None:
-    """The published case whose own file this is; a file of the same name elsewhere is somebody's own wall."""
+    """The published case with this scene file; None for a file of the same name elsewhere, which is a user's wall."""
     return next((case for case in (*PUBLISHED, *FURTHER) if case.path.resolve() == path.resolve()), None)
 
 
 def find_scene(scene: str) -> Path:
-    """Path of a scene: a file, or the name of a published case where there is no such file."""
+    """Path of a scene given as a file or, if no such file exists, as the name of a published case."""
     path = Path(scene)
     if path.is_file():
         return path

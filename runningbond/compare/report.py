@@ -1,4 +1,4 @@
-"""The report of a comparison: verdict, tables in colour, charts, a card a wall, and what was run."""
+"""The report of a comparison: verdict, coloured tables, charts, one card per wall, and the versions used."""
 
 import platform
 import statistics
@@ -28,8 +28,9 @@ from .page import inline_svg, templates
 from .table import CORRECTED, Comparison, answer, cost_sheets, multiplier_sheets
 
 DRAWN_WITH = ("pyvista", "vtk", "matplotlib", "jinja2")
-FULL, STRONGEST, AGREE, WORST = 0.3, 0.55, 0.05, 4
-"""Deviation of the strongest colour, how opaque it is, what counts as agreement, how many disagreements are told."""
+FULL_COLOUR, OPACITY, AGREEMENT, LISTED = 0.3, 0.55, 0.05, 4
+"""Relative deviation with the strongest colour, opacity of that colour, largest relative spread that counts as
+agreement, and number of the largest disagreements that are listed."""
 
 CONTENTS = (
     ("verdict", "Verdict"),
@@ -41,7 +42,7 @@ CLOSING = ("cost", "Cost"), ("provenance", "What was run")
 
 
 class Cell(str):
-    """An entry of a table: its words, the number to sort by, how far that is above a median, and where it leads."""
+    """A table cell: its text, the number to sort by, the colour for its deviation from a median, and its link."""
 
     value: float | None = None
     heat = 0.0
@@ -49,7 +50,7 @@ class Cell(str):
 
 
 def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance: float) -> str:
-    """Write the page, with charts by the names of their files."""
+    """Render the page; `charts` are keyed by file name without suffix."""
     drawn = {name: inline_svg(figure, name) for name, figure in charts.items()}
     walls = [(f"wall-{name}", name) for name in comparison.scenes]
     contents = [entry for entry in CONTENTS if entry[0] != "charts" or drawn]
@@ -58,7 +59,7 @@ def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance:
         subject="comparison",
         contents=[*contents, *walls, *CLOSING],
         verdict=verdict(comparison),
-        full=f"{FULL:.0%}",
+        full=f"{FULL_COLOUR:.0%}",
         multipliers=[_coloured(comparison, sheet) for sheet in multiplier_sheets(comparison)],
         charts=drawn,
         cards=[_card(comparison, name) for name in comparison.scenes],
@@ -68,13 +69,13 @@ def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance:
 
 
 def loads(comparison: Comparison, name: str) -> dict[str, float]:
-    """Collapse loads of a wall by the models of its blocks that found one."""
+    """Collapse loads of a wall by model name, for models of blocks (no estimates) that found one."""
     outcomes = {x.name: comparison.outcome(name, x) for x in comparison.models if x.kind != "estimate"}
     return {model: x.multiplier for model, x in outcomes.items() if x is not None and x.multiplier is not None}
 
 
 def verdict(comparison: Comparison) -> list[str]:
-    """What the campaign says as a whole: how many cases are decided, where models agree, where they differ most."""
+    """Summarise the campaign: number of decided cases, where models agree, and where they differ most."""
     said = Counter(outcome.status for outcome in comparison.campaign.outcomes.values())
     rest = "".join(f", {count} {status}" for status, count in said.most_common() if status != "collapse")
     rest += f", {k} have a model that does not apply" if (k := len(comparison.campaign.inapplicable)) else ""
@@ -84,9 +85,9 @@ def verdict(comparison: Comparison) -> list[str]:
     found = {name: own for name in comparison.scenes if len(own := loads(comparison, name)) > 1 and min(own.values())}
     spread = {name: max(own.values()) / min(own.values()) - 1 for name, own in found.items()}
     if spread:
-        near = sum(x <= AGREE for x in spread.values())
-        sentences.append(f"Models of blocks agree within {AGREE:.0%} on {near} of {counted(len(spread), 'wall')}.")
-        worst = [_apart(found[x], x) for x in _largest(spread) if spread[x] > AGREE]
+        near = sum(x <= AGREEMENT for x in spread.values())
+        sentences.append(f"Models of blocks agree within {AGREEMENT:.0%} on {near} of {counted(len(spread), 'wall')}.")
+        worst = [_apart(found[x], x) for x in _largest(spread) if spread[x] > AGREEMENT]
         sentences[-1] += f" They differ most on {'; '.join(worst)}." if worst else ""
     printed = {
         f"{name}: {label} printed as {number(x)}, median {number(median)}": abs(x / median - 1)
@@ -102,7 +103,7 @@ def verdict(comparison: Comparison) -> list[str]:
 
 
 def _largest(sizes: Mapping[str, float]) -> list[str]:
-    return sorted(sizes, key=lambda name: -sizes[name])[:WORST]
+    return sorted(sizes, key=lambda name: -sizes[name])[:LISTED]
 
 
 def _apart(found: Mapping[str, float], name: str) -> str:
@@ -111,7 +112,7 @@ def _apart(found: Mapping[str, float], name: str) -> str:
 
 
 def _coloured(comparison: Comparison, sheet: Sheet) -> Sheet:
-    """A sheet of multipliers whose entries know their numbers, and how far these are from the median of a wall's."""
+    """Convert the entries of a sheet of multipliers to cells, coloured by the deviation from the wall's median."""
     rows = []
     for row in sheet.rows:
         name, found = row[0], loads(comparison, row[0])
@@ -122,14 +123,14 @@ def _coloured(comparison: Comparison, sheet: Sheet) -> Sheet:
         cells[0].link = f"wall-{name}"
         for head, cell in zip(sheet.heads[1:], cells[1:], strict=True):
             cell.value = values.get(head)
-            off = (cell.value / median - 1) / FULL if cell.value is not None and median else 0.0
-            cell.heat = max(-1.0, min(off, 1.0)) * STRONGEST
+            off = (cell.value / median - 1) / FULL_COLOUR if cell.value is not None and median else 0.0
+            cell.heat = max(-1.0, min(off, 1.0)) * OPACITY
         rows.append(cells)
     return replace(sheet, rows=rows)
 
 
 def _card(comparison: Comparison, name: str) -> dict[str, Any]:
-    """A wall: its mechanisms side by side, its curves, and what each model says and costs."""
+    """Template variables of a wall's card: mechanisms side by side, curves, and result and cost of each model."""
     scene = comparison.scenes[name]
 
     def said(outcome: Outcome) -> str:

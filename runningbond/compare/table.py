@@ -1,4 +1,4 @@
-"""Tables of a campaign: printed values beside every model's bracket, for the terminal, Markdown and CSV."""
+"""Tables of a campaign: published values beside the bracket of every model, for the terminal, Markdown and CSV."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,12 +18,12 @@ from .published import BARALDI, PublishedCase
 
 OWN = "Your scenes"
 CORRECTED = "HOMO corrected, tan 30°"
-ALIKE = 1e-3  # relative width below which a bracket is printed as one number
+ONE_NUMBER = 1e-3  # relative width up to which a bracket is printed as one number
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Scenes by name, the models run on them, what came out, and the published cases by the names of their scenes."""
+    """Scenes by name, the models run on them, their outcomes, and the published cases by scene name."""
 
     scenes: Mapping[str, Scene]
     models: Sequence[Model]
@@ -31,7 +31,7 @@ class Comparison:
     published: Mapping[str, PublishedCase] = field(default_factory=dict)
 
     def groups(self) -> dict[str, list[str]]:
-        """Names of scenes by the table they stand in: one a source, and λ and newtons apart."""
+        """Names of scenes by table title: one table per source; own scenes with λ and with loads in newtons apart."""
         groups: dict[str, list[str]] = {}
         for name, scene in self.scenes.items():
             own = f"{OWN}: load [N]" if is_force(scene) else OWN
@@ -39,34 +39,34 @@ class Comparison:
         return groups
 
     def outcome(self, name: str, model: Model) -> Outcome | None:
-        """The outcome of a model on a scene."""
+        """The outcome of a model on a scene; None if there is none."""
         return self.campaign.outcomes.get((name, model.name))
 
     def cell(self, name: str, model: Model, text: Callable[[Outcome], str]) -> str:
-        """A cell of a table: the text of an outcome, or why there is none."""
+        """Text of a table cell: `text` of the outcome, or "n/a" or "not run" if there is none."""
         if (outcome := self.outcome(name, model)) is not None:
             return text(outcome)
         return "n/a" if (name, model.name) in self.campaign.inapplicable else "not run"
 
     def printed(self, name: str) -> dict[str, float]:
-        """Values printed for a scene, and the homogenised one as its formula should read."""
+        """Published values of a scene, and for Baraldi's panels the homogenised multiplier by the corrected formula."""
         if (case := self.published.get(name)) is None:
             return {}
         return case.printed | ({CORRECTED: corrected_homo(self.scenes[name])} if case.source == BARALDI else {})
 
     def labels(self, names: Iterable[str]) -> list[str]:
-        """What the values printed for some scenes are called."""
+        """Labels of the published values of some scenes, without repetition."""
         return list(dict.fromkeys(label for name in names for label in self.printed(name)))
 
     def only_published(self) -> "Comparison":
-        """The part of it that is about published scenes."""
+        """The part of this comparison that concerns published scenes."""
         scenes = {name: scene for name, scene in self.scenes.items() if name in self.published}
         outcomes = {cell: outcome for cell, outcome in self.campaign.outcomes.items() if cell[0] in scenes}
         return replace(self, scenes=scenes, campaign=Campaign(outcomes))
 
 
 def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
-    """Printed values and brackets, one table a group of scenes."""
+    """Published values and brackets, one table per group of scenes."""
     sheets = []
     for title, names in comparison.groups().items():
         labels = comparison.labels(names)
@@ -77,7 +77,7 @@ def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
 
 
 def cost_sheets(comparison: Comparison) -> list[Sheet]:
-    """Degrees of freedom, steps and seconds, one table a group of scenes."""
+    """Degrees of freedom, steps and seconds, one table per group of scenes."""
     sheets = []
     for title, names in comparison.groups().items():
         cells = {name: [str(int(comparison.scenes[name].wall.sum()))] for name in names}
@@ -89,14 +89,14 @@ def cost_sheets(comparison: Comparison) -> list[Sheet]:
 def _sheet(
     comparison: Comparison, title: str, heads: list[str], cells: Mapping[str, list[str]], text: Callable[[Outcome], str]
 ) -> Sheet:
-    """A row a scene: its name, the cells that are its own, and the text of each model's outcome."""
+    """Make a sheet with one row per scene: its name, its `cells`, and the text of each model's outcome."""
     models = comparison.models
     rows = [[name, *own, *(comparison.cell(name, model, text) for model in models)] for name, own in cells.items()]
     return Sheet(title, ["scene", *heads, *(model.name for model in models)], rows)
 
 
 def csv_text(comparison: Comparison) -> str:
-    """One row a scene and model, with the unit of its multiplier and the printed values of the scene."""
+    """CSV table with one row per scene and model, the unit of the multiplier, and the published values of the scene."""
     labels = comparison.labels(comparison.scenes)
     scalars = [key for key in SCALARS if key not in ("scene", "model")]
     heads = ["scene", "title", "source", "blocks", "model", "unit", *scalars, *(f"printed {label}" for label in labels)]
@@ -115,27 +115,27 @@ def csv_text(comparison: Comparison) -> str:
 
 
 def corrected_homo(scene: Scene) -> float:
-    """Homogenised multiplier by the corrected Eq. (6), with the tan 30° the paper's column was computed with."""
+    """Homogenised multiplier by the corrected Eq. (6), with tan 30°, as used for the paper's column."""
     multiplier = homog(scene.with_joint(friction=math.tan(math.radians(30)))).multiplier
-    assert multiplier is not None  # it answers or refuses
+    assert multiplier is not None  # homog returns a multiplier or raises SceneError
     return multiplier
 
 
 def _printed(comparison: Comparison, name: str, labels: Iterable[str]) -> list[str]:
-    """Values printed for a scene, by label, with the three decimals that papers give; empty where there is none."""
+    """Published values of a scene by label, with three decimals as in the papers; empty if there is none."""
     values = {x: number(y) if x == CORRECTED else f"{y:.3f}" for x, y in comparison.printed(name).items()}
     return [values.get(label, "") for label in labels]
 
 
 def answer(outcome: Outcome) -> str:
-    """Answer of an outcome as tables print it: the bracket of a collapse, any other status before its bounds."""
+    """Result of an outcome for tables: the bracket if it is a collapse, otherwise the status followed by its bounds."""
     return bracket(outcome) if outcome.status == "collapse" else f"{outcome.status} {bracket(outcome)}".strip()
 
 
 def bracket(outcome: Outcome) -> str:
-    """Bracket of an outcome as tables print it, as one number where it is that narrow; empty without one."""
+    """Bracket of an outcome for tables, as one number if narrower than `ONE_NUMBER`; empty if there is none."""
     lower, upper, multiplier = outcome.lower, outcome.upper, outcome.multiplier
-    if lower is not None and upper is not None and upper - lower > ALIKE * abs(upper):
+    if lower is not None and upper is not None and upper - lower > ONE_NUMBER * abs(upper):
         return f"{number(lower)} – {number(upper)}"
     if multiplier is not None:
         return number(multiplier)

@@ -1,1 +1,1 @@
-"""Who touches whom: the sides of blocks that face each other at finite displacement."""
+"""Contact detection: the sides of blocks that face each other at finite displacements."""

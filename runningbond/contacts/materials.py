@@ -1,4 +1,4 @@
-"""What contacts are made of: their joint's material while they are glued, its dry version afterwards."""
+"""Materials of contacts: that of their joint while they are glued, its dry version afterwards."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from .search import Contacts
 
 
 def dry(material: JointMaterial) -> JointMaterial:
-    """A material that is broken: without cohesion and tension, of the same friction, stiffness and crushing."""
+    """The broken version of a material: no cohesion, no tension; the same friction, stiffness and crushing."""
     still = replace(material, softening="linear", fracture_energy_2=None)
     return replace(still, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=None)
 
@@ -21,8 +21,8 @@ def dry(material: JointMaterial) -> JointMaterial:
 class ContactMaterials:
     """Materials of the contacts of a scene.
 
-    The ends of sides that made a joint are of its material until they have been lost sight of, and of its dry version
-    afterwards. Sides that meet later are of the dry version of the default material.
+    Sides that formed a joint have its material until the contact search has lost them, and its dry version afterwards.
+    Sides that meet later have the dry version of the default material.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ class ContactMaterials:
     Raises
     ------
     SceneError
-        For a material without stiffness; for one that is glued for ever: a joint that has slid away from where it was
-        glued has a cohesion that only a law with damage can speak of; and for insets that differ.
+        For a material without stiffness; for a bonded material that cannot break: only a law with damage defines the
+        cohesion of a joint that has slid away from where it was glued; and for materials with different insets.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -54,7 +54,7 @@ class ContactMaterials:
         self._broken = tuple(map(dry, own))
         both = zip(own, self._broken, strict=True)
         self._all = (*(each if each.is_bonded else broken for each, broken in both), *self._broken)
-        # Alike ones are taken for one, the first, so that there are few rows of points.
+        # Equal materials share the number of the first, so that points form few runs of one material.
         first: dict[JointMaterial, int] = {}
         self._alike = np.array([first.setdefault(each, k) for k, each in enumerate(self._all)])
 
@@ -64,11 +64,11 @@ class ContactMaterials:
         return np.where(contacts.glued, joint, joint + len(self._broken))
 
     def side_by_side(self, contacts: Contacts) -> Contacts:
-        """Contacts that may be of one material one after the other, for kernels go from one material to the next."""
+        """Contacts sorted by the material that they may have, because kernels process one material after the other."""
         in_joint = replace(contacts, glued=contacts.joint >= 0)
         return contacts.chosen(np.argsort(self._alike[self.number(in_joint)], kind="stable"))
 
     def law(self, contacts: Contacts, pairs: Indices | None = None, points: int = 1) -> KernelLaw:
-        """Law of the ends, or of a number of points along ``pairs`` ``(n, 2)`` of them (`joints.along`)."""
+        """Law of all ends, or of `points` points along each of the ``pairs`` ``(n, 2)`` of ends (`joints.along`)."""
         number = self._alike[self.number(contacts)]
         return kernel_law(self._all, number if pairs is None else np.tile(number[pairs[:, 0]], points))

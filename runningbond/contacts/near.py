@@ -1,4 +1,4 @@
-"""Which sides face each other and are near, where corners rest, and how far blocks overlap, as compiled kernels."""
+"""Compiled kernels of contact detection: facing sides that are near, sides that corners rest on, overlap of blocks."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,22 +11,22 @@ from runningbond.scene import Array, Indices, Mask, Unsigned
 def near_sides(
     order: Indices, first: Indices, box: Array, boxes: Array, normal: Array, held: Mask, found: Array
 ) -> int:
-    """Count pairs of near sides of two blocks that face each other, and write the first ones to ``found`` ``(n, 2)``.
+    """Count pairs of facing sides of two blocks whose boxes overlap, and write the first n to ``found`` ``(n, 2)``.
 
-    The side of the block of higher number comes first; pairs of held blocks are left out.
+    The side of the block with the higher number comes first; pairs of fixed blocks are left out.
 
     Parameters
     ----------
     order : (nb,) int
-        Blocks by the left end of their box.
+        Blocks sorted by the left end of their boxes.
     first : (nb + 1,) int
         First side of each block.
     box : (nb, 4) float
         Left, lower, right and upper end of each block's box.
     boxes, normal : (nv, 4), (nv, 2) float
-        The same of each side, and its outward normal.
+        The same for each side, and its outward normal.
     held : (nb,) bool
-        Blocks between which nothing can happen.
+        Fixed blocks.
     """
     count = 0
     for i in range(order.size):
@@ -50,12 +50,12 @@ def near_sides(
 
 
 @kernel
-def reaches(pairs: Indices, first: Indices, corners: Array, normals: Array, reach: NDArray[np.float64]) -> None:
-    """Write how far pairs ``(n, 2)`` of convex parts overlap along any of their sides' normals, at least ``(n,)`` [m].
+def overlaps(pairs: Indices, first: Indices, corners: Array, normals: Array, overlap: NDArray[np.float64]) -> None:
+    """Write the least overlap ``(n,)`` [m] of pairs ``(n, 2)`` of convex parts along the normals of all their sides.
 
-    Part i has the rows ``first[i]`` up to ``first[i + 1]`` of the corners and of the normals of the sides from them.
+    Part i has the rows ``first[i]`` to ``first[i + 1] - 1`` of the corners, and of the normals of the sides from them.
     """
-    for pair in range(reach.size):
+    for pair in range(overlap.size):
         least = np.inf
         for part in pairs[pair]:
             for side in range(first[part], first[part + 1]):
@@ -67,12 +67,12 @@ def reaches(pairs: Indices, first: Indices, corners: Array, normals: Array, reac
                         nearest, farthest = min(nearest, at), max(farthest, at)
                     low, high = max(low, nearest), min(high, farthest)
                 least = min(least, high - low)
-        reach[pair] = least
+        overlap[pair] = least
 
 
 @kernel
 def resting_ends(arcs: Array, ends: Unsigned, inwards: Array, corner: Indices, side: Indices) -> None:
-    """Write the corner of each end ``(n, 6)`` that is farther in, and the side that it rests on, two ``(n,)``."""
+    """Write which of the two corners of each end ``(n, 6)`` is farther in, and the side that it rests on, ``(n,)``."""
     for row in range(inwards.size):
         k = np.uint64(row)
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]

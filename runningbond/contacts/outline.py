@@ -11,39 +11,40 @@ from .reentrant import ConvexParts, RunOn
 from .rigid_sides import Corners, Placed, place_outline
 
 MARGIN = 0.02
-"""Least distance up to which sides count as near, in sizes of the smallest block (root of its area).
+"""Least margin of contact detection, relative to the size of the smallest block (root of its area).
 
-It costs time, not accuracy: the wider, the more pairs are looked at every step, and the fewer times they are sought.
+It affects run time, not accuracy: a wider margin means more pairs to evaluate in every step, but fewer searches.
 """
 
 FLAT = 0.1
-"""Turn [rad] of the outline below which a corner is hardly one: it is not rounded, and rests with both its sides."""
+"""Angle [rad] by which the outline turns at a corner, below which the corner is not rounded, and rests with both sides.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner.
+    """Blocks with rounded corners: arcs that touch the two sides at a corner an inset away from the corner.
 
-    Sides are numbered as the corners of the blocks that they start from. After those come the ends of sides that run on
-    behind re-entrant corners (`reentrant`), as corners that no side starts from.
+    Sides have the numbers of the corners that they start from. After the real corners come the virtual ends of sides
+    that are extended behind re-entrant corners (`reentrant`): corners from which no side starts.
     """
 
     blocks: Blocks  # the blocks, undeformed
-    parts: ConvexParts  # what they are made of
+    parts: ConvexParts  # their convex parts
     radius: Array  # (nc,) radius of each corner's arc [m]
-    centre: Array  # (nc, 2) its centre, from the centroid of its block [m]
-    side: Indices  # (nc,) side that starts at the corner, or that runs on to it
-    exterior: Array  # (nc,) angle by which the outline turns at the corner, 0 at what runs on [rad]
+    centre: Array  # (nc, 2) centre of the arc, from the centroid of its block [m]
+    side: Indices  # (nc,) side that starts at the corner, or that is extended to it
+    exterior: Array  # (nc,) angle by which the outline turns at the corner [rad], 0 at virtual corners
     normal: Array  # (nv, 2) outward normal of each side
-    length: Array  # (nv,) its length [m],
-    straight: Array  # (nv,) and between its arcs, with what it runs on by
-    ends: Indices  # (nv, 2) corners at its start and at its end
-    run_on: Array  # (nv, 2) how far it runs on there [m]
+    length: Array  # (nv,) length of each side [m],
+    straight: Array  # (nv,) and length between its arcs, with its extensions [m]
+    ends: Indices  # (nv, 2) corners at the start and the end of each side, virtual ones if it is extended
+    run_on: Array  # (nv, 2) extensions there [m]
     thickness: Array  # (nb,) out-of-plane thickness of each block [m]
-    held: Mask  # (nb,) blocks between which nothing can happen
-    # (nj,) number of the two sides of each joint of the undeformed wall, ascending (`side_pair`), and (nj,) its joint
+    held: Mask  # (nb,) fixed blocks: there are no contacts between two of them
+    # (nj,) pair of sides of each joint of the undeformed wall, ascending (`side_pair`), and (nj,) the joint's number
     joined: tuple[Indices, Indices]
-    joints: Joints  # those joints
+    joints: Joints  # joints of the undeformed wall
 
     @classmethod
     def of(cls, scene: Scene) -> "Outline":
@@ -52,7 +53,7 @@ class Outline:
         Raises
         ------
         SceneError
-            If the inset takes up a whole side.
+            If the insets at both ends of a side are longer than the side.
         """
         blocks = scene.blocks
         start, after = blocks.vertices, blocks.successor
@@ -83,7 +84,7 @@ class Outline:
 
     @property
     def margin(self) -> float:
-        """Distance up to which sides of blocks that hardly move count as near [m]."""
+        """Margin of contact detection for blocks that barely move [m]."""
         return float(MARGIN * np.sqrt(self.blocks.area.min()))
 
     @cached_property
@@ -93,12 +94,12 @@ class Outline:
         return np.maximum.reduceat(np.hypot(*(blocks.vertices - blocks.centroid[blocks.owner]).T), blocks.first[:-1])
 
     def thickness_between(self, e: Indices, f: Indices) -> Array:
-        """Out-of-plane thickness [m] that sides ``(n,)`` of two blocks share: that of the thinner one, ``(n,)``."""
+        """Out-of-plane thickness [m] of contacts of two blocks' sides ``(n,)``: that of the thinner block, ``(n,)``."""
         owner = self.blocks.owner
         return np.asarray(np.minimum(self.thickness[owner[e]], self.thickness[owner[f]]))
 
     def joint_of(self, e: Indices, f: Indices) -> Indices:
-        """Joint that sides made on the undeformed wall, −1 where they made none, ``(n,)``."""
+        """Joint that pairs of sides formed on the undeformed wall, −1 for none, ``(n,)``."""
         key, joint = self.joined
         if not len(key):
             return np.full(len(e), -1)
@@ -107,35 +108,35 @@ class Outline:
 
     @property
     def corner_arrays(self) -> Corners:
-        """The arrays from which kernels place the outline."""
+        """The arrays from which kernels compute the outline's position."""
         blocks = self.blocks
         freedom = (3 * blocks.owner[self.side]).astype(np.uint64)
         return Corners(blocks.centroid.copy(), freedom, self.centre.copy(), self.normal[self.side])
 
     def placed(self, motion: Array) -> Placed:
-        """Blocks and arcs in space after a motion ``(3 nb,)``."""
+        """Positions of blocks and arcs after a motion ``(3 nb,)``."""
         placed = Placed(np.zeros((4, len(self.blocks))), np.zeros((len(self.radius), 4)))
         place_outline(motion, self.corner_arrays, placed)
         return placed
 
     def corners(self, motion: Array) -> Array:
-        """Corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
+        """Positions of the corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
         return self.points(self.blocks.owner, self.blocks.vertices, motion)
 
     def points(self, block: Indices, at: Array, motion: Array) -> Array:
-        """Points of blocks, given on the undeformed wall, after a motion ``(3 nb,)``, ``(n, 2)`` [m]."""
+        """Positions ``(n, 2)`` [m], after a motion ``(3 nb,)``, of points of blocks given on the undeformed wall."""
         cosine, sine, x, y = self.placed(motion).blocks[:, block]
         arm = at - self.blocks.centroid[block]
         return np.column_stack([x + cosine * arm[:, 0] - sine * arm[:, 1], y + sine * arm[:, 0] + cosine * arm[:, 1]])
 
 
 def side_pair(e: Indices, f: Indices) -> Indices:
-    """Number of a pair of sides ``(n,)``, whichever comes first."""
+    """Number of each pair of sides ``(n,)``, the same for both orders of the two."""
     return np.minimum(e, f) * 2**32 + np.maximum(e, f)
 
 
 def _joined_sides(blocks: Blocks, normal: Array, length: Array, joints: Joints) -> tuple[Indices, Indices]:
-    """Pairs of sides that joints lie between, ascending, and the joints: of each block the side nearest its middle."""
+    """Pairs of sides that form joints, ascending, and the joints: the side of each block nearest the joint's middle."""
     start, along = blocks.vertices, np.column_stack([-normal[:, 1], normal[:, 0]])
 
     def side(block: int, middle: Array) -> int:

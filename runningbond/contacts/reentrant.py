@@ -1,7 +1,7 @@
-"""Blocks that are not convex: how far their sides run on behind re-entrant corners, and the convex parts they are of.
+"""Non-convex blocks: extensions of their sides behind re-entrant corners, and their convex parts.
 
-A corner that is pressed into a notch as far as its joints give way has passed the end of both sides of the notch, and
-rests on both: each goes on, inside the block, behind the re-entrant corner where it ends.
+A corner that is pressed into a notch, as deep as the joints deform, lies beyond the ends of both sides of the notch,
+and yet rests on both. Therefore each side is extended into the block, behind the re-entrant corner where it ends.
 """
 
 from collections.abc import Iterator
@@ -16,21 +16,21 @@ from runningbond.scene import Array, Blocks, Indices, Mask
 from runningbond.scene.blocks import turns_right
 
 RUN_ON = 0.5
-"""How far a side runs on behind a re-entrant corner, in parts of its way through the block."""
+"""Extension of a side behind a re-entrant corner, as a share of the distance through the block in its direction."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConvexParts:
-    """Convex polygons of which blocks are made, their corners those of the blocks; a convex block is one of them."""
+    """Convex polygons that make up the blocks, with corners at the blocks' corners; a convex block is one part."""
 
     first: Indices  # (n + 1,) part i owns `corner[first[i]:first[i + 1]]`,
     corner: Indices  # (nc,) corners of the blocks, counter-clockwise
-    normal: Array  # (nc, 2) outward normal of the side of a part that starts there, cuts through a block among them
-    of_side: Indices  # (nv,) part of each side of a block
+    normal: Array  # (nc, 2) outward normal of the side of a part that starts there, cuts through the block included
+    of_side: Indices  # (nv,) part that each side of a block belongs to
 
     @classmethod
     def of(cls, blocks: Blocks, normal: Array) -> Self:
-        """Cut blocks along diagonals; the outward normals ``(nv, 2)`` of their own sides are taken as they are."""
+        """Cut blocks along diagonals; `normal` ``(nv, 2)`` are the outward normals of the blocks' sides."""
         rings: list[Indices] = []
         for block, (start, stop) in enumerate(zip(blocks.first[:-1], blocks.first[1:], strict=True)):
             own = np.arange(start, stop)
@@ -46,16 +46,16 @@ class ConvexParts:
 
 
 class RunOn(NamedTuple):
-    """Where sides run on to, each array a row an end of a side that is a re-entrant corner."""
+    """Extensions of sides: each array has one row per end of a side that is a re-entrant corner."""
 
     side: Indices  # (n,) the side
     end: Indices  # (n,) 0 for its start, 1 for its end
-    far: Array  # (n,) how far it runs on [m],
-    point: Array  # (n, 2) and up to where, on the undeformed wall [m]
+    far: Array  # (n,) length of the extension [m],
+    point: Array  # (n, 2) and its end point on the undeformed wall [m]
 
     @classmethod
     def of(cls, blocks: Blocks, run: Array) -> Self:
-        """Let the sides of blocks, of directions ``(nv, 2)``, run on."""
+        """Extend the sides of blocks, whose directions are ``(nv, 2)``, behind re-entrant corners."""
         corners = np.column_stack([np.arange(len(run)), blocks.successor])
         side, end = np.nonzero(blocks.reentrant[corners])
         corner, outwards = corners[side, end], np.where(end == 1, 1.0, -1.0)[:, None] * run[side]
@@ -69,10 +69,10 @@ class RunOn(NamedTuple):
 
 
 def _way_through(polygon: Array, corner: int, along: Array, tolerance: float) -> float:
-    """How far it is from a re-entrant corner of a polygon ``(n, 2)``, along a unit vector, to the outline again [m].
+    """Distance [m] from a re-entrant corner of a polygon ``(n, 2)``, along a unit vector, to the outline again.
 
-    A corner that is no farther off than the tolerance [m] is on the way, or sides in line with each other, as those on
-    both sides of a step are, would run on beneath one another by rounding.
+    Another corner within the tolerance [m] of this line counts as met. Otherwise sides in line with each other, as on
+    both sides of a step, would by rounding be extended beneath one another.
     """
     n, reach = len(polygon), polygon - polygon[corner]
     ahead, off = reach @ along, reach @ [-along[1], along[0]]
@@ -99,9 +99,9 @@ def _parts(polygon: Array) -> Iterator[Indices]:
 
 
 def _halves(ring: Array, reentrant: Mask) -> tuple[Indices, Indices]:
-    """Two parts of a polygon ``(n, 2)``, cut from its first re-entrant corner ``(n,)`` to another corner.
+    """Cut a polygon ``(n, 2)`` in two, from its first re-entrant corner ``(n,)`` to another corner.
 
-    To that which leaves the fewest re-entrant corners, and the nearest of those.
+    The cut goes to the corner that leaves the fewest re-entrant corners, among equal ones to the nearest.
     """
     n, whole, corner = len(ring), shapely.Polygon(ring), int(np.argmax(reentrant))
     others = np.mod(corner + np.arange(2, n - 1), n)
@@ -115,7 +115,7 @@ def _halves(ring: Array, reentrant: Mask) -> tuple[Indices, Indices]:
     ):
         left += turns_right(at - before, after - at)
     best = others[np.lexsort([np.hypot(*(there - here).T), left])].tolist()
-    # Inside all along: one that touches another corner on its way would leave a part that touches itself.
+    # The cut must lie inside all along: if it touched another corner, a part would touch itself.
     seen = (shapely.relate_pattern(whole, shapely.LineString(ring[[corner, other]]), "1**F**FF*") for other in best)
     low, high = sorted((corner, next(compress(best, seen))))
     return np.arange(low, high + 1), np.concatenate([np.arange(high, n), np.arange(low + 1)])

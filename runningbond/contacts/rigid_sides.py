@@ -1,18 +1,18 @@
-"""Kinematics of rigid blocks at finite displacements: two sides that face each other, and the two ends they share.
+"""Kinematics of rigid blocks at finite displacements: two facing sides, and the two ends of their overlap.
 
-A side is straight between two corners, and a corner is an arc of radius r about a centre c, as far in from the corner
-as the joints' inset (r = 0: a sharp corner). Where side e of block b lies on side f of block a, each end of their
+A side is straight between two corners. A corner is an arc of radius r about a centre c, and touches the sides at the
+joints' inset from the corner (r = 0: a sharp corner). If side e of block b lies on side f of block a, each end of their
 overlap is the corner v of e or the corner w of f, whichever is farther in. With the normal n from a to b, the tangent
 t, and the tilt φ of b against a,
 
     v rests on f:   opening n_f · (c_v − c_w) − r_v − r_w,   slip t_f · (c_v − c_w) − r_v φ
-    w bears e:      opening n_e · (c_v − c_w) − r_v − r_w,   slip t_e · (c_v − c_w) + r_w φ
+    w carries e:    opening n_e · (c_v − c_w) − r_v − r_w,   slip t_e · (c_v − c_w) + r_w φ
     arc on arc:     opening |c_v − c_w| − r_v − r_w,         slip r_v ∠(n_e, n) + r_w ∠(n_f, n),  n along the centres
 
-Each goes over into the next without a jump, and so does their friction when a corner comes off one block's side and
-its side slides on over another's. Only sharp corners that lie on each other, pressed in by δ, go over with a jump of
-the slip, δ sin φ, of which no notice is taken (`reframe_sharp`). The rates of opening and slip are those of the two
-blocks at the point where they touch: forces there do the work that the jumps say, and keep linear and angular momentum.
+The three cases join continuously, and so does their friction when a corner leaves one block's side and its own side
+slides on over another one's. Only at sharp corners that lie on each other, penetrating by δ, does the slip jump, by
+δ sin φ; the jump is shifted out of the history (`reframe_sharp`). The rates of opening and slip are those of the two
+blocks at the contact point: contact forces are work-conjugate to the jumps, and keep linear and angular momentum.
 """
 
 import math
@@ -26,60 +26,60 @@ from runningbond.scene import Array, Mask, Unsigned
 
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
-QUARTER, REST = 1.57079632673412561417, 6.07710050650619224932e-11
-"""π / 2 in two parts, the first with so few digits that small multiples of it are exact (fdlibm's)."""
+QUARTER_TURN, QUARTER_TAIL = 1.57079632673412561417, 6.07710050650619224932e-11
+"""π / 2 in two parts (from fdlibm); the first has so few digits that small multiples of it are exact."""
 
 S1, S2, S3 = -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04
 S4, S5, S6 = 2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10
 C1, C2, C3 = 4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05
 C4, C5, C6 = -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11
-"""Coefficients of sine and cosine up to π / 4 (fdlibm's `__kernel_sin` and `__kernel_cos`)."""
+"""Polynomial coefficients of sine and cosine up to π / 4 (`__kernel_sin` and `__kernel_cos` of fdlibm)."""
 
 
 class Corners(NamedTuple):
     """The corners of undeformed blocks, in the frame of the undeformed wall."""
 
     centroid: Array  # (nb, 2) centroid of each block [m]
-    freedom: Unsigned  # (nv,) first freedom of each corner's block
+    freedom: Unsigned  # (nv,) first degree of freedom of each corner's block
     centre: Array  # (nv, 2) centre of each corner's arc, from the centroid [m]
     normal: Array  # (nv, 2) outward normal of the side that starts at the corner
 
 
 class Placed(NamedTuple):
-    """Where blocks and the arcs of their corners are in space."""
+    """Positions of blocks and of the arcs of their corners in space."""
 
     blocks: Array  # (4, nb) cosine and sine of each block's rotation, and its centroid [m]
     arcs: Array  # (nv, 4) centre of each corner's arc [m] and outward normal of the side that starts there
 
 
 class RigidSides(NamedTuple):
-    """What `gather_sides` and `scatter_sides` share."""
+    """Arrays that `gather_sides` and `scatter_sides` share."""
 
     corners: Corners  # the corners of the undeformed blocks
     # (nv,) radius of each corner's arc, and length of the side that starts there between its arcs [m]
     radius: Array
     straight: Array
-    # (np, 6) of each end of facing sides e and f the corners v and w, the far corners of e and f, and e and f
+    # (np, 6) for each end of facing sides e and f: corners v and w, the far corners of e and f, and e and f
     ends: Unsigned
-    inwards: Array  # (np,) 1 where inwards is along the tangent of f, −1 where it is against it
-    tilt: Array  # (np,) tilt of e against f, less the turns of the blocks [rad]
-    area: Array  # (np,) area the end stands for [m²]
-    placed: Placed  # written by `gather_sides`: the outlines in space
-    contact: Array  # (np, 4) written by `gather_sides`: point of contact [m] and normal of each end
-    out: Array  # (np,) written by `gather_sides`: how the pull of each end is turned (`turn_out`)
-    bears: Mask  # (np,) written by `gather_sharp`: whether w bears e, else v rests on f
+    inwards: Array  # (np,) 1 if the overlap lies along the tangent of f from the end, −1 if against it
+    tilt: Array  # (np,) tilt of e against f, minus the rotations of the blocks [rad]
+    area: Array  # (np,) area that the end represents [m²]
+    placed: Placed  # written by `gather_sides`: positions in space
+    contact: Array  # (np, 4) written by `gather_sides`: contact point [m] and normal of each end
+    out: Array  # (np,) written by `gather_sides`: how the force of each end is turned (`turn_out`)
+    bears: Mask  # (np,) written by `gather_sharp`: True if w carries e, False if v rests on f
 
 
 @kernel
 def turn(motion: Array, cosine: Array, sine: Array) -> None:
-    """Write cosines and sines ``(nb,)`` of rotations in a motion ``(3 nb,)``, to rounding.
+    """Write cosines and sines ``(nb,)`` of the rotations in a motion ``(3 nb,)``, accurate to rounding.
 
-    In place of the library's: so the loop runs in vector registers.
+    This replaces the library functions, so that the loop is vectorised.
     """
     for i in range(cosine.size):
         spin = motion[3 * i + 2]
         quarters = math.floor(spin * (2.0 / math.pi) + 0.5)
-        r = (spin - quarters * QUARTER) - quarters * REST
+        r = (spin - quarters * QUARTER_TURN) - quarters * QUARTER_TAIL
         z = r * r
         s = r + r * z * (S1 + z * (S2 + z * (S3 + z * (S4 + z * (S5 + z * S6)))))
         c = 1.0 - (0.5 * z - z * z * (C1 + z * (C2 + z * (C3 + z * (C4 + z * (C5 + z * C6))))))
@@ -92,7 +92,7 @@ def turn(motion: Array, cosine: Array, sine: Array) -> None:
 
 @kernel
 def place_outline(motion: Array, corners: Corners, placed: Placed) -> None:
-    """Write where blocks and arcs are after a motion ``(3 nb,)``."""
+    """Write the positions of blocks and arcs after a motion ``(3 nb,)``."""
     centroid, freedom, centre, normal = corners
     blocks, arcs = placed
     cosine, sine, x, y = blocks[0], blocks[1], blocks[2], blocks[3]
@@ -112,41 +112,42 @@ def place_outline(motion: Array, corners: Corners, placed: Placed) -> None:
 
 @kernel
 def arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float]:
-    """Opening of two arcs and the normal along the line of their centres ``(dx, dy)``."""
+    """Opening of two arcs, and the unit normal along the line ``(dx, dy)`` between their centres."""
     distance = math.hypot(dx, dy)
     return distance - radii, dx / distance, dy / distance
 
 
 @kernel
 def sharp_opening(away: float, beyond: float) -> float:
-    """Opening of a sharp corner that is `away` from a side and `beyond` its far end, both negative inside.
+    """Opening of a sharp corner that is `away` from a side and `beyond` its far end [m], both negative inside.
 
-    A corner deeper in than it is far from that end is let go of, until twice as deep: it is coming out there, and
-    belongs to the side round the end. Else a block that slides onto the next one of its course would be stuck in the
-    flank of that one, by no more than the joint under it gives way. It changes by √5 times the way of the corner; its
-    pull is turned by as much (`turn_out`), or blocks that hit each other's edges would be thrown away by no energy.
+    If the corner is deeper than its distance from that end, the penetration decreases again, to zero at twice this
+    distance: the corner emerges at the end, and belongs to the side round the end. Otherwise a block that slides onto
+    the next block of its course would get stuck in that block's flank, deeper in by the closure of the joint below.
+    The opening changes by up to √5 times the motion of the corner. The contact force is turned accordingly
+    (`turn_out`); otherwise blocks that hit each other's edges would be thrown off with energy from nowhere.
     """
     return away if away > beyond else 2.0 * beyond - away
 
 
 @kernel
 def turn_out(pull: float, shear: float, out: float) -> tuple[float, float]:
-    """Normal and tangential force of a contact whose opening is (1 − |c|) `away` + c `moved`, c being `out`.
+    """Normal and tangential force of a contact with opening (1 − |c|) `away` + c `moved`, where c is `out`.
 
-    `away` is along the normal, and `moved` the slip: c is 0, or ±2 for a corner that is let go of.
+    `away` is the distance along the normal, and `moved` the slip; c is 0, or ±2 for a corner that emerges.
     """
     return pull * (1.0 - abs(out)), shear + pull * out
 
 
 def in_space(pull: Array, shear: Array, normal: Array) -> Array:
-    """Forces ``(2, n)`` along x and y, of normal and tangential ones ``(n,)`` of contacts with normals ``(n, 2)``."""
+    """Forces ``(2, n)`` along x and y from normal and tangential ones ``(n,)`` of contacts with normals ``(n, 2)``."""
     nx, ny = normal.T
     return np.array([pull * nx - shear * ny, pull * ny + shear * nx])
 
 
 @kernel
 def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
-    """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``."""
+    """Write opening and slip ``(np,)`` [m] of the ends of facing sides after a motion ``(3 nb,)``."""
     corners, radius, straight, ends, inwards, tilt, _, placed, contact, let_go, _ = geometry
     place_outline(motion, corners, placed)
     freedom = corners.freedom
@@ -207,7 +208,7 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
 
 @kernel
 def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
-    """As `gather_sides` where all corners are sharp: with choices in place of branches, which is faster."""
+    """As `gather_sides` for sharp corners only: conditional values in place of branches make it faster."""
     corners, _, straight, ends, inwards, _, _, placed, contact, out, held = geometry
     place_outline(motion, corners, placed)
     arcs = placed.arcs
@@ -239,9 +240,9 @@ def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
 def turned_by(
     apart: tuple[float, float], f: tuple[float, float], e: tuple[float, float], bears: bool
 ) -> tuple[float, float]:
-    """By how much opening and slip [m] of corners `apart` are larger along e than along f, or the other way round.
+    """Increase of opening and slip [m] when measured along e in place of f (`bears`), or along f in place of e.
 
-    `apart` leads from w to v [m], f and e are the outward normal of f and the inward one of e.
+    `apart` is the vector from w to v [m]; f and e are the outward normal of f and the inward normal of e.
     """
     sign = 1.0 if bears else -1.0
     nx, ny = sign * (e[0] - f[0]), sign * (e[1] - f[1])
@@ -250,7 +251,7 @@ def turned_by(
 
 @kernel
 def turned_sharp(geometry: RigidSides, k: int) -> tuple[float, float]:
-    """By how much opening and slip of end k [m] are larger along the side that bears now than along the other one."""
+    """Increase of opening and slip of end k [m] when measured along the side in use now in place of the other one."""
     _, _, _, ends, _, _, _, placed, _, _, bears = geometry
     arcs, v, w, e, f = placed.arcs, ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
     apart = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
@@ -260,9 +261,9 @@ def turned_sharp(geometry: RigidSides, k: int) -> tuple[float, float]:
 
 @kernel
 def reframe_sharp(geometry: RigidSides, frames: Frames, history: Array) -> None:
-    """After `gather_sharp`, retell the history of ends where one block's side has taken over from the other's."""
+    """After `gather_sharp`, transform the history of ends whose jumps are now measured along the other block's side."""
     bears, (bore, plastic) = geometry[-1], frames
-    # Hardly ever any: to count them takes less time than a branch for each.
+    # This is rare: counting the ends first takes less time than a branch for each.
     changed = 0
     for row in range(bore.size):
         changed += bears[row] != bore[row]
@@ -278,7 +279,7 @@ def reframe_sharp(geometry: RigidSides, frames: Frames, history: Array) -> None:
 
 @kernel
 def angle(nx: float, ny: float, fx: float, fy: float) -> float:
-    """Angle from one unit vector f to another n."""
+    """Angle [rad] from one unit vector f to another n."""
     return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
 
 
@@ -286,11 +287,11 @@ def angle(nx: float, ny: float, fx: float, fy: float) -> float:
 def far_arcs(
     dx: float, dy: float, radii: tuple[float, float], ex: float, ey: float, fx: float, fy: float
 ) -> tuple[float, float, float, float]:
-    """Opening, slip and normal of two arcs, of radii (r_v, r_w), by which blocks come off each other's sides.
+    """Opening, slip and normal of two arcs with radii (r_v, r_w), over which blocks slide off each other's sides.
 
     ``(dx, dy)`` leads from the centre of w to that of v, ``(ex, ey)`` is the inward normal of e and ``(fx, fy)`` the
-    outward one of f. Beyond a tilt of 45° on the average, the arcs belong to the sides round the corners; so they are
-    not counted twice.
+    outward normal of f. Beyond a mean tilt of 45° the arcs belong to the sides round the corners; the opening is then
+    made positive, so that they are not counted twice.
     """
     r_v, r_w = radii
     away, nx, ny = arc_on_arc(dx, dy, r_v + r_w)
@@ -302,7 +303,7 @@ def far_arcs(
 
 @kernel
 def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
-    """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
+    """Subtract the resultants of the contacts' tractions ``(np,)`` in space from forces ``(3 nb,)``."""
     corners, _, _, ends, _, _, area, placed, contact, out, _ = geometry
     freedom, cx, cy = corners.freedom, placed.blocks[2], placed.blocks[3]
     for row in range(normal.size):
@@ -318,7 +319,7 @@ def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force:
         fx = pull * nx - shear * ny
         fy = pull * ny + shear * nx
         p, q = b // THREE, a // THREE
-        # Before anything is written: what is written to might else have to be read again.
+        # Computed before any write: after writes, arrays that may alias would have to be read again.
         of_b = (x - cx[p]) * fy - (y - cy[p]) * fx
         of_a = (x - cx[q]) * fy - (y - cy[q]) * fx
         force[b] -= fx

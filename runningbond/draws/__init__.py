@@ -1,4 +1,4 @@
-"""Draws of a wall: what differs between them, and what their collapses have in common."""
+"""Random draws of a wall: what varies between them, and statistics of their collapse loads."""
 
 from .draws import Draws, Sampling
 from .scatter import Scatter

@@ -1,4 +1,4 @@
-"""Draws: one model on walls that differ in nothing that is known, and what their answers have in common."""
+"""Draws: one model on walls that differ only within what is unknown about them, and statistics of the outcomes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,14 +26,14 @@ NUMBER = Range(least=2, most=10_000)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Draws:
-    """Outcomes of one model on a wall as it is, and on others drawn beside it.
+    """Outcomes of one model on a wall as given, and on random draws of it.
 
     Parameters
     ----------
     outcomes
-        By the numbers of the draws; 0 is the wall as it is.
+        Outcomes by the number of the draw; 0 is the wall as given.
     scatter
-        What differs besides the last bits: sizes of blocks, friction of joints.
+        What varies in addition to the last bits: sizes of blocks, friction of joints.
     """
 
     outcomes: tuple[Outcome, ...]
@@ -41,10 +41,10 @@ class Draws:
 
     @property
     def drawn(self) -> tuple[Outcome, ...]:
-        """Outcomes of the walls that are draws, which all numbers below are of.
+        """Outcomes of the draws, from which all statistics below are computed.
 
-        Of walls that differ in last bits the one as it is is as good as any. Where sizes or frictions scatter it is
-        none of them: all of its joints are as the median one, and none is the weakest, so that it bears more than most.
+        If walls differ in last bits only, the wall as given is one of the draws. If sizes or frictions scatter, it is
+        left out: all its joints are like the median one and none is the weakest, so that it carries more than most.
         """
         return self.outcomes[1:] if self._is_scattered else self.outcomes
 
@@ -54,47 +54,47 @@ class Draws:
 
     @cached_property
     def multipliers(self) -> Array:
-        """λ of the draws that collapse, from the lowest ``(n,)``."""
+        """λ of the draws that collapse, ascending, ``(n,)``."""
         return np.sort([x.multiplier for x in self.drawn if x.multiplier is not None])
 
     @cached_property
     def borne(self) -> Array:
-        """λ of all draws that are decided, from the lowest ``(n,)``.
+        """λ of all draws that are decided, ascending, ``(n,)``.
 
-        It is 0 where the dead load alone is too much, and infinite where every load is borne.
+        It is 0 for a draw that falls under its dead load alone, and infinite for a draw that carries every load.
         """
         none, all_of_them = (self._count(status) for status in ("infeasible", "unbounded"))
         return np.concatenate([np.zeros(none), self.multipliers, np.full(all_of_them, np.inf)])
 
     @property
     def lowest(self) -> float | None:
-        """Lowest λ; 0 where a draw falls under its dead load."""
+        """Lowest λ; 0 if a draw falls under its dead load, None if it is infinite or no draw is decided."""
         return float(self.borne[0]) if len(self.borne) and np.isfinite(self.borne[0]) else None
 
     @property
     def mean(self) -> float | None:
-        """Mean λ; None where a draw bears every load."""
+        """Mean λ; None if a draw carries every load, or none is decided."""
         return float(self.borne.mean()) if len(self.borne) and np.isfinite(self.borne[-1]) else None
 
     @property
     def error(self) -> float | None:
-        """Standard error of the mean, of two draws or more."""
+        """Standard error of the mean; None for fewer than two draws, or an infinite λ."""
         n = len(self.borne)
         if n < 2 or not np.isfinite(self.borne[-1]):
             return None
-        # From the lowest, so that equal ones have no scatter from the rounding of their mean.
+        # Relative to the lowest, so that equal values do not scatter by the rounding of their mean.
         return float((self.borne - self.borne[0]).std(ddof=1) / np.sqrt(n))
 
     @property
     def half_width(self) -> float | None:
-        """Half the widest bracket of the draws that collapse: so far each λ, and so their mean, may be from its own."""
+        """Half the widest bracket of the draws that collapse: largest error of each λ, and so of their mean."""
         brackets = [(each.lower, each.upper) for each in self.drawn if each.multiplier is not None]
         halves = [(upper - lower) / 2 for lower, upper in brackets if lower is not None and upper is not None]
         return max(halves, default=None)
 
     @property
     def quantiles(self) -> dict[str, float]:
-        """λ below which `QUANTILES` of the draws that are decided lie, by their percentages; infinite where none."""
+        """Quantiles of λ of the decided draws, by percentage (`QUANTILES`); infinite if they fall on infinite λ."""
         if not len(self.borne):
             return {}
         high = np.quantile(self.borne, QUANTILES, method="higher")
@@ -106,7 +106,7 @@ class Draws:
         return sum(outcome.status == status for outcome in self.drawn)
 
     def summary(self) -> dict[str, Any]:
-        """All of this as an object of JSON."""
+        """All results as a JSON object."""
         keys = ("status", "multiplier", "lower", "upper", "seconds")
         return {
             "scatter": str(self.scatter),
@@ -120,7 +120,7 @@ class Draws:
         }
 
     def sheet(self) -> Sheet:
-        """A row a draw."""
+        """Table with one row per draw."""
         heads = ("draw", "status", "λ", "lower", "upper", "seconds")
         names = ["0, as it is", *map(str, range(1, len(self.outcomes)))]
         rows = [
@@ -131,7 +131,7 @@ class Draws:
         return Sheet(f"{first.scene}: {first.model}, draws of {self.scatter}", heads, rows)
 
     def __str__(self) -> str:
-        """What they come to, in a line."""
+        """Summary in one line."""
         told = f"{len(self.multipliers)} of {len(self.drawn)} draws collapse"
         if self._is_scattered:
             first = self.outcomes[0]
@@ -160,22 +160,23 @@ def _told(load: float | None) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Sampling:
-    """A model that follows a path, to be run on a wall and on others that differ in nothing that is known.
+    """A model that follows a loading path, to be run on a wall and on random draws of it.
 
     Parameters
     ----------
     scene
-        The wall as it is, which is the first draw.
+        The wall as given, which is the first draw.
     number
-        How many draws.
+        Number of draws.
     scatter
-        What differs: ``bits``, the last ones of densities and frictions; or ``size=0.01,friction=0.05``, the blocks'
+        What varies: ``bits``, the last bits of densities and frictions; or ``size=0.01,friction=0.05``, the blocks'
         sizes within a relative tolerance, each joint's friction by the standard deviation of its logarithm.
 
     Raises
     ------
     SceneError
-        For a number of draws or a scatter that there is not, or a model that follows no path, or not this wall's.
+        For an invalid number of draws or scatter, for a model that follows no loading path or does not apply to the
+        wall, or for a scatter that the wall does not allow.
     """
 
     scene: Scene
@@ -196,7 +197,7 @@ class Sampling:
 
     @property
     def read(self) -> Scatter:
-        """What differs."""
+        """The scatter, parsed."""
         return Scatter.read(self.scatter)
 
     def run(
@@ -206,9 +207,9 @@ class Sampling:
         jobs: int = -1,
         progress: Callable[[str], None] = lambda done: None,
     ) -> Draws:
-        """Run them, those that a folder does not hold; parameters and errors as of `run_campaign`.
+        """Run all draws that are not in the folder yet; parameters and errors as in `run_campaign`.
 
-        Without a folder nothing is kept; progress is called with the name of each draw that is done.
+        Without a folder nothing is saved; `progress` is called with the name of each draw that is done.
         """
         scenes = {f"draw-{k:04d}": self.read.draw(self.scene, k) for k in range(self.number)}
         if folder is not None:

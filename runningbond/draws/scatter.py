@@ -1,4 +1,4 @@
-"""Scatter: walls that differ from one in their last bits, their blocks' sizes or their joints' friction."""
+"""Scatter: random variants of a wall that differ in last bits, in the sizes of blocks or in the friction of joints."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -11,13 +11,13 @@ from runningbond.scene.materials import LEAST_FRICTION, MOST_FRICTION
 from runningbond.scene.ranges import Range, suggestion
 
 SEED = 20
-"""Seed of all draws: a draw of a number is the same wherever and beside however many others it is made."""
+"""Seed of all draws: a draw with a given number is the same on every machine and for any number of draws."""
 
 BITS = 1e-12
-"""Relative change of densities and frictions that changes nothing but their last bits."""
+"""Relative change of densities and frictions that affects only their last bits."""
 
-MOST_OF_JOINT = 0.45
-"""Most that a line moves, in lengths of the joints that end at it: two that move towards each other leave a tenth."""
+LARGEST_SHIFT = 0.45
+"""Largest shift of a line, relative to joints that end at it: two that approach each other leave a tenth of a joint."""
 
 KEY = "scatter"
 RANGES = {"size": Range(above=0.0, most=0.1), "friction": Range(above=0.0, most=0.5)}
@@ -25,12 +25,12 @@ RANGES = {"size": Range(above=0.0, most=0.1), "friction": Range(above=0.0, most=
 
 @dataclass(frozen=True)
 class Scatter:
-    """What differs from draw to draw, besides the last bits.
+    """What varies from draw to draw, in addition to the last bits.
 
     Parameters
     ----------
     size
-        Tolerance of the blocks' widths and heights, relative: the lines of joints move within half of it.
+        Relative tolerance of block widths and heights: lines of joints shift by up to half of it either way.
     friction
         Standard deviation of the logarithm of each joint's friction.
     """
@@ -40,12 +40,12 @@ class Scatter:
 
     @classmethod
     def read(cls, text: str) -> "Scatter":
-        """Scatter as it is asked for: ``bits``, or ``size=0.01,friction=0.05`` or one of them.
+        """Parse a scatter: ``bits``, or ``size=0.01,friction=0.05``, or one of these two.
 
         Raises
         ------
         SceneError
-            For anything else.
+            For any other text.
         """
         if not isinstance(text, str):
             raise SceneError(KEY, "must be bits, or size and friction as in size=0.01,friction=0.05", text)
@@ -56,7 +56,7 @@ class Scatter:
                 remedy = "must be bits, or size and friction, each once, as in size=0.01,friction=0.05"
                 raise SceneError(KEY, f"{remedy}{suggestion(name, list(RANGES))}", text)
             given: float | str = value
-            with suppress(ValueError):  # what is no number is refused as out of range
+            with suppress(ValueError):  # text that is no number is refused by `take`
                 given = float(value)
             values[name] = RANGES[name].take(f"{KEY} {name}", given)
         return cls(**values)
@@ -66,12 +66,12 @@ class Scatter:
         return ",".join(f"{name}={value:g}" for name, value in given if value) or "bits"
 
     def draw(self, scene: Scene, number: int) -> Scene:
-        """A wall drawn at random by its number; 0 is the wall as it is.
+        """Random variant of a wall with a given number; 0 is the wall as given.
 
         Raises
         ------
         SceneError
-            Where blocks with other than level and upright sides are to differ in size.
+            If sizes are to vary and blocks have sides that are neither horizontal nor vertical.
         """
         random = np.random.default_rng([SEED, number])
         blocks = tuple(replace(each, density=each.density * _bit(random)) for each in scene.block_materials)
@@ -88,9 +88,9 @@ def _bit(random: np.random.Generator) -> float:
 
 
 def _rougher(material: JointMaterial, by: float) -> JointMaterial:
-    """A material of so many times the friction, whose tensile strength is at most what its cohesion leaves it."""
+    """A material with its friction times `by`, and a tensile strength of at most cohesion over friction."""
     friction, tension = material.friction * by, material.tensile_strength
-    if friction > 0:  # what is given as the least or the most stays one that a wall may have
+    if friction > 0:  # values at the limits stay admissible
         friction = min(max(friction, LEAST_FRICTION), MOST_FRICTION)
     if tension is not None and friction > 0:
         tension = min(tension, material.cohesion / friction)
@@ -98,7 +98,7 @@ def _rougher(material: JointMaterial, by: float) -> JointMaterial:
 
 
 def _with_friction(scene: Scene, factors: Array) -> Scene:
-    """A wall each of whose joints has its own friction, times one of the factors ``(nj,)``."""
+    """A wall with a separate material for each joint, whose friction is multiplied by one of the factors ``(nj,)``."""
     own = [
         _rougher(scene.joint_materials[k], by) for k, by in zip(scene.material_of_joint, factors.tolist(), strict=True)
     ]
@@ -107,10 +107,10 @@ def _with_friction(scene: Scene, factors: Array) -> Scene:
 
 
 def _resized(scene: Scene, size: float, random: np.random.Generator) -> Scene:
-    """A wall whose lines of joints, each straight and as long as it goes, have moved.
+    """A wall with randomly shifted lines of joints; a line is straight and as long as sides of blocks continue it.
 
-    Its outer sides stay, and so do a beam, the ground and what is in line with them. Lines move by less where a joint
-    between two of them would vanish. Loads, pins and bars at points stay on their blocks, and move as those do.
+    The outer sides of the wall stay, and so do a beam, the ground and lines that continue them. Shifts are reduced if a
+    joint between two lines would vanish. Loads, pins and bars at points stay on their blocks, and move with them.
     """
     blocks, corners, ends = scene.blocks, scene.blocks.vertices.copy(), scene.joints.ends.copy()
     place, place_of_end = np.split(_places(scene), [len(corners)])
@@ -127,7 +127,7 @@ def _resized(scene: Scene, size: float, random: np.random.Generator) -> Scene:
         line, at = _lines(scene, place, axis), blocks.vertices[:, axis]
         shift = random.uniform(-0.5, 0.5, line.max() + 1) * size * sides[:, axis].min()
         most, length = np.full(len(shift), np.inf), np.abs(np.diff(scene.joints.ends[..., axis], axis=1))
-        np.minimum.at(most, line[corner_of_end], np.where(length > blocks.tolerance, MOST_OF_JOINT * length, np.inf))
+        np.minimum.at(most, line[corner_of_end], np.where(length > blocks.tolerance, LARGEST_SHIFT * length, np.inf))
         outer = (at < low[axis] + blocks.tolerance) | (at > high[axis] - blocks.tolerance)
         most[line[outer | ~scene.masonry[blocks.owner]]] = 0.0
         moved = np.clip(shift, -most, most)[line]
@@ -138,12 +138,12 @@ def _resized(scene: Scene, size: float, random: np.random.Generator) -> Scene:
 
 
 def _carried(scene: Scene, drawn: Scene) -> Scene:
-    """A wall drawn from a scene with its loads, pins and bars on the blocks that have them there."""
+    """The drawn wall, with the loads, pins and bars of the original scene moved along with their blocks."""
     (low, high), (drawn_low, drawn_high) = scene.blocks.boxes, drawn.blocks.boxes
     shift, growth = drawn_low - low, (drawn_high - drawn_low) / (high - low) - 1.0
 
     def moved(block: Indices, at: Array) -> Array:
-        """Points of blocks, -1 for those fixed in space, where they are in the boxes that have moved."""
+        """Points after the change of their blocks' bounding boxes; points of block -1 are fixed in space."""
         there = at + shift[block] + (at - low[block]) * growth[block]
         return np.where((block < 0)[..., None], at, there)
 
@@ -166,9 +166,9 @@ def _carried(scene: Scene, drawn: Scene) -> Scene:
 
 
 def _places(scene: Scene) -> Indices:
-    """Numbers of the places along x and y of all corners, then of the joints' ends, ``(nv + 2 nj, 2)``.
+    """Numbers of distinct x and y coordinates of all corners, then of the joints' ends, ``(nv + 2 nj, 2)``.
 
-    What is nearer than contacts reach is at one place.
+    Coordinates closer than the contact tolerance have the same number.
     """
     points = np.concatenate([scene.blocks.vertices, scene.joints.ends.reshape(-1, 2)])
     order = np.argsort(points, axis=0)
@@ -179,14 +179,14 @@ def _places(scene: Scene) -> Indices:
 
 
 def _lines(scene: Scene, place: Indices, axis: int) -> Indices:
-    """Number of the straight line across an axis that each corner lies on, ``(nv,)``.
+    """Number of the straight line perpendicular to an axis that each corner lies on, ``(nv,)``.
 
-    A line is made up of sides of blocks that share a corner or lie on one another, at one place along the axis.
+    A line consists of sides of blocks with the same coordinate along the axis that share a corner or overlap.
     """
     start, end = np.arange(len(place)), scene.blocks.successor
     across = place[start, axis] == place[end, axis]
     order = np.lexsort((place[:, 1 - axis], place[:, axis]))
-    # Corners at one place along the axis, one after the other: joined where a side covers the way between them.
+    # Successive corners with the same coordinate along the axis are connected if a side covers the stretch between.
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
     covered = np.zeros(len(order) + 1, dtype=np.int64)

@@ -1,8 +1,8 @@
-"""Points of bodies that turn: where they are, and what forces at them do on the bodies' coordinates.
+"""Points of bodies that rotate: their positions, and the generalised forces that forces at them exert on the bodies.
 
-A point is at c + u + r: centroid and translation of its body, and an arm r = R(θ) (a + Σ φ_k q_k) that turns with the
-body and has small deformations in its frame. A force f there does f on the translations, r × f on the rotation and
-φ_k · Rᵀ f on the deformations.
+A point is at c + u + r: centroid and translation of its body, and an arm r = R(θ) (a + Σ φ_k q_k) that rotates with the
+body and deforms by small amounts in the body's frame. A force f there contributes f to the translations, r × f to the
+rotation and φ_k · Rᵀ f to the deformations.
 """
 
 import math
@@ -15,33 +15,33 @@ from runningbond.joints.compiled import kernel
 from runningbond.scene import ANCHOR, Array, Indices, Unsigned
 
 Deformation: TypeAlias = Callable[[int, Array], tuple[Indices, Array]]
-"""Coordinates ``(m,)`` of the deformations of a block, and a point's displacement in its frame for each ``(m, 2)``."""
+"""Modes ``(m,)`` that deform a block, and the displacement of a point in its frame per unit of each, ``(m, 2)``."""
 
 
 class BodyPoints(NamedTuple):
     """Points of bodies."""
 
-    rigid: Unsigned  # (n, 3) where in the motion the translations and the rotation of their bodies stand
-    centroid: Array  # (n, 2) of the bodies at rest [m]
-    arm: Array  # (n, 2) from there to the points at rest [m]
-    start: Unsigned  # (n + 1,) first deformation of each, then their number
-    mode: Unsigned  # (m,) where in the motion the deformations stand
-    shape: Array  # (m, 2) displacement of the point for each, in the frame of its body
-    body: Indices  # (n,) the bodies, `ANCHOR` of what is fixed in space
+    rigid: Unsigned  # (n, 3) indices in the motion of the translations and the rotation of their bodies
+    centroid: Array  # (n, 2) centroids of the undeformed bodies [m]
+    arm: Array  # (n, 2) from the centroids to the undeformed points [m]
+    start: Unsigned  # (n + 1,) first deformation mode of each point, then the total number
+    mode: Unsigned  # (m,) indices in the motion of the deformation modes
+    shape: Array  # (m, 2) displacement of the point per unit of each mode, in the frame of its body
+    body: Indices  # (n,) the bodies; `ANCHOR` for points fixed in space
 
     @property
     def arrays(self) -> "Points":
-        """What kernels take."""
+        """The arrays that the kernels take."""
         return self[:6]
 
     @property
     def point(self) -> Indices:
-        """Point of each deformation, ``(m,)``."""
+        """Point of each deformation mode, ``(m,)``."""
         count = np.diff(self.start).astype(np.int64)
         return np.repeat(np.arange(len(self.arm)), count)
 
     def places(self, motion: Array) -> Array:
-        """Where the points are after a motion ``(nd,)``, ``(n, 2)`` [m]."""
+        """Positions of the points after a motion ``(nd,)``, ``(n, 2)`` [m]."""
         arm = self.arm.copy()
         np.add.at(arm, self.point, self.shape * motion[self.mode, None])
         (px, py), (x, y, spin) = arm.T, motion[self.rigid].T
@@ -50,23 +50,23 @@ class BodyPoints(NamedTuple):
 
 
 def rigid_body(block: int, at: Array) -> tuple[Indices, Array]:
-    """The deformations of a body that has none."""
+    """No deformation modes: the `Deformation` of a rigid body."""
     return np.zeros(0, dtype=np.int64), np.zeros((0, 2))
 
 
 def body_points(
     block: Indices, at: Array, centroid: Array, rigid: Indices, still: int, deformation: Deformation = rigid_body
 ) -> BodyPoints:
-    """Points of bodies at rest.
+    """Points of undeformed bodies.
 
     Parameters
     ----------
     block, at : (n,) int, (n, 2) float
-        Body of each, `ANCHOR` of one that is fixed in space, and its place [m].
+        Body of each point, `ANCHOR` for one that is fixed in space, and its position [m].
     centroid, rigid : (nb, 2) float, (nb, 3) int
-        Centroids of the bodies [m], and where in the motion their translations and rotations stand.
+        Centroids of the bodies [m], and indices in the motion of their translations and rotations.
     still
-        A coordinate that never moves.
+        Index of a coordinate that never moves.
     deformation
         How bodies deform at a point.
     """
@@ -107,7 +107,7 @@ def arm_of(points: Points, k: int, motion: Array) -> tuple[float, float, float, 
 def push_at(
     points: Points, k: int, turned: tuple[float, float, float, float], push: tuple[float, float], force: Array
 ) -> None:
-    """Add to forces ``(nd,)`` what a push [N] at a point does, of which `arm_of` says how it is turned."""
+    """Add a force [N] at a point to the modal forces ``(nd,)``; `turned` is what `arm_of` returns for the point."""
     rigid, _, _, start, mode, shape = points
     (x, y, c, s), (fx, fy) = turned, push
     force[rigid[k, 0]] += fx

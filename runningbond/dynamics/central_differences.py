@@ -1,6 +1,6 @@
 """Central differences with lagged viscous and local damping, compiled for any kinematics and any law.
 
-Each step is a gather of jumps, the law over all points, a scatter of forces and one diagonal update:
+Each step gathers the jumps, evaluates the law at all points, scatters the forces and updates each mode:
 
     f = f_dead + λ f_live − K q − Bᵀ t(B q) − c v⁻
     v⁺ = v⁻ + Δt (f − α |f| sign v⁻) / m
@@ -28,40 +28,40 @@ Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 """Buffers: motion and load ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
 
 Watch: TypeAlias = tuple[int, float, Array]
-"""Steps taken before; energy [J] that the state was given but for the work of loads that are constant now, inf where
-it is not watched; the largest energy supplied so far ``(1,)`` [J], brought up to date.
+"""Steps taken before; energy [J] of the state except the work of the loads that are constant now, inf if energy is not
+checked; the largest energy supplied so far ``(1,)`` [J], updated in place.
 
-These are plain tuples: to take a named one apart costs a call of the kernels a tenth of the steps of a small wall.
+These are plain tuples: unpacking a named one costs each kernel call a tenth of the steps of a small wall.
 """
 
 Scales: TypeAlias = tuple[float, float, float]
-"""Time step [s], local damping α, and the joints' viscosity per stiffness, in time steps."""
+"""Time step [s], local damping α, and the ratio of the joints' viscosity to their stiffness, in time steps."""
 
 Control: TypeAlias = Literal["held", "driven", "carried"]
-"""What the steps prescribe: a load alone, the live load's power besides, or the velocity of held modes."""
+"""What is prescribed: only a load, in addition the power of the live load, or the velocity of the held modes."""
 
 CONTROLS: tuple[Control, ...] = get_args(Control)
-"""In the order of their numbers."""
+"""Names of the controls, in the order of the numbers `HELD`, `DRIVEN` and `CARRIED`."""
 
 HELD, DRIVEN, CARRIED = range(3)
 
-RISE = 20
-"""Steps in which a load that rises is constant."""
+STEPS_PER_LOAD = 20
+"""Number of steps over which a rising load is kept constant."""
 
 LOOK = 100
-"""Steps between two looks at the energy."""
+"""Number of steps between two energy checks."""
 
 CERTAIN_SHARE = 0.05
-"""Share of the energy in motion and in springs that a stable run certainly was supplied with.
+"""Fraction of the kinetic and elastic energy that a stable run must at least have been supplied with.
 
-Of the work W of the loads, central differences make energy E in motion and in springs and energy D spent, with
-W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E as velocities are half a step behind. So a stable run has
-W ≥ D + (1 − Δt / Δt_critical) E; this share holds up to 0.95 of the critical step. Where a swing comes back to
-its start W passes through nothing, and the velocity of half a step ago does not: W is the largest of the run so far.
+Of the work W of the loads, central differences turn E into kinetic and elastic energy and dissipate D, with
+W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E because velocities are half a step behind. So a stable run
+has W ≥ D + (1 − Δt / Δt_critical) E; this fraction is safe up to 0.95 of the critical step. When an oscillation returns
+to its start, W passes through zero, but the velocity half a step before does not: W is the largest so far.
 """
 
-TOO_MUCH_SPENT = 2.0
-"""Energy spent on damping, in energies supplied, that no stable run comes to: 1, but it is summed step by step."""
+LARGEST_DISSIPATION = 2.0
+"""Ratio of dissipated to supplied energy above which a run is unstable: exactly 1, but D is summed up step by step."""
 
 
 @kernel
@@ -85,11 +85,11 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
 
 @kernel
 def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most: Array) -> bool:
-    """Whether no more energy [J] is in motion, in springs and spent on damping than was supplied; not where it is NaN.
+    """Whether kinetic, elastic and dissipated energy [J] do not exceed the energy supplied; False if any is NaN.
 
-    Supplied are what was given and the work of a load that was constant; `most` keeps the most of it. The joints' work
-    is left out: at high frequencies that of their viscosity comes out too large, and in a wall that rings without
-    damping so does that of their friction.
+    The supply is `given` and the work of a load that was constant; `most` keeps its largest value. The work of the
+    joints is left out: at high frequencies the work of their viscosity is overestimated, and in a wall that vibrates
+    without damping so is that of their friction.
     """
     stiffness, _, mobility = modes
     motion, velocity, _, damped, _ = state
@@ -98,13 +98,13 @@ def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most
     spent = 0.0
     for i in range(motion.size):
         supplied += load[i] * motion[i]
-        if mobility[i] > 0.0:  # what is held may be carried on, and knows neither inertia nor damping
+        if mobility[i] > 0.0:  # held modes may be moved, but have no inertia and no damping
             held += 0.5 * velocity[i] * velocity[i] / mobility[i]
             spent += damped[i]
         held += 0.5 * stiffness[i] * motion[i] * motion[i]
     most[0] = max(most[0], supplied)
-    # Local damping that makes a mode unstable gives energy instead of taking it.
-    return bool(max(spent, 0.0) + CERTAIN_SHARE * held <= TOO_MUCH_SPENT * most[0])
+    # Local damping that makes a mode unstable supplies energy instead of dissipating it.
+    return bool(max(spent, 0.0) + CERTAIN_SHARE * held <= LARGEST_DISSIPATION * most[0])
 
 
 @kernel
@@ -117,7 +117,7 @@ def _dot(one: Array, other: Array) -> float:
 
 @kernel
 def _carry(live: Array, speed: float, velocity: Array, force: Array) -> float:
-    """Give held modes their speed; what presses on them per unit of their motion."""
+    """Prescribe the velocity of held modes; return the force on these modes, per unit of their motion."""
     pressed = 0.0
     for i in range(live.size):
         if live[i] != 0.0:
@@ -128,7 +128,7 @@ def _carry(live: Array, speed: float, velocity: Array, force: Array) -> float:
 
 @kernel
 def _drive(live: Array, response: float, modes: Modes, state: StateArrays) -> float:
-    """Add the multiple of the live load that keeps its power, and return it."""
+    """Add the multiple of the live load that keeps its power constant, and return it."""
     stiffness, viscosity, mobility = modes
     motion, velocity, _, _, force = state
     pushed = 0.0
@@ -141,10 +141,10 @@ def _drive(live: Array, response: float, modes: Modes, state: StateArrays) -> fl
 
 
 @kernel
-def _give_back(
+def _restore_speed(
     live: Array, response: float, speed: float, mobility: Array, dt: float, motion: Array, velocity: Array
 ) -> float:
-    """Local damping acts on the live load too; what it takes from the prescribed speed is given back, and returned."""
+    """Restore the prescribed speed, which local damping of the live load has reduced; return the multiplier needed."""
     returned: float = (speed - _dot(live, velocity)) / (dt * response)
     for i in range(live.size):
         change = dt * returned * mobility[i] * live[i]
@@ -157,7 +157,7 @@ def _give_back(
 def _at_constant_loads(
     control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
 ) -> tuple[int, bool, float, float]:
-    """The steps of `step` in which loads stay as they are."""
+    """The steps of `step` during which loads are constant."""
     dt, local, joint_viscosity = scales
     addresses, geometry, parameters, modes, restraint, ties, far, memory, state, work, frames = arrays
     rig, turning, pushing, leaning = far
@@ -215,7 +215,7 @@ def _at_constant_loads(
             multiplier = _drive(live, response, modes, state)
         advance(at_update, modes, memory, state, local, dt)
         if driven:
-            multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
+            multiplier += _restore_speed(live, response, speed, mobility, dt, motion, velocity)
             total += multiplier
             worked += 0.5 * multiplier * dt * (before + speed)
         if rigged:
@@ -234,28 +234,28 @@ def _at_constant_loads(
 def step(
     control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
 ) -> tuple[int, bool, float, float]:
-    """Take steps of a model.
+    """Take time steps of a model.
 
     Parameters
     ----------
     control
-        Held, a multiplier of the live load that rises from zero by the speed a step is added to a constant load;
-        driven, live·v is kept at the speed [W], by a multiplier of the live load; carried, held modes move at the
-        speed [1/s] times `live`.
+        Held: a constant load plus a multiplier of the live load that rises from zero by `speed` per step; driven:
+        live·v is kept at `speed` [W] by a multiplier of the live load; carried: held modes move at `speed` [1/s] times
+        `live`.
     arrays
-        `Addresses` of the kernels; what they are called with: the interface's geometry, the law's parameters, modes;
-        restraint, ties, what is there at finite displacements; the update's memory, `StateArrays`, `Work` and `Frames`.
-        At finite displacements there are a rig, turning loads, those that are live, and supports that turn. With a rig,
-        whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and acts on
-        nothing else; it is written to where it drives at points that turn as well, and the way of supports that turn.
+        `Addresses` of the kernels, then their arguments: the interface's geometry, the law's parameters, modes;
+        restraint, ties, the objects at finite displacements; the update's memory, `StateArrays`, `Work` and `Frames`.
+        The objects at finite displacements are a rig, rotating dead loads, rotating live loads, and rotating supports.
+        With a rig (its freedoms are not empty) the live load rotates with the beam (`rig`), is written to, and acts on
+        nothing else; the live load is also written to if it drives at points that rotate, or if supports rotate.
     watch
-        The energy is looked at every `LOOK` steps of the state's life; where it does not add up, the steps end.
+        The energy is checked at every `LOOK`-th step of the state's life; if the check fails, the steps end.
 
     Returns
     -------
     steps, stable, multipliers, work
-        Steps taken; whether no more energy is spent than was supplied; the sum of the multipliers that drive, or of
-        what presses on the carried modes per unit of their motion; the work of all but the constant load.
+        Steps taken; whether no more energy is spent than was supplied; the sum of the driving multipliers, or of the
+        forces on the carried modes per unit of their motion; the work of all loads except the constant one.
     """
     rises = speed != 0.0 and control == HELD
     state, work, _ = arrays[8:]
@@ -266,7 +266,7 @@ def step(
     while stable and taken < steps:
         piece = steps
         if rises:
-            piece = min(RISE, steps - taken)
+            piece = min(STEPS_PER_LOAD, steps - taken)
             multiplier = speed * (taken + 0.5 * piece)
             for i in range(live.size):
                 loaded[i] = load[i] + multiplier * live[i]

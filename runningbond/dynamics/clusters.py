@@ -1,12 +1,12 @@
-"""Bodies in clusters, which move against one another with more inertia than together (selective mass scaling).
+"""Bodies in clusters, with more inertia against relative motion than against common motion (selective mass scaling).
 
-A cluster has the rigid motion R that has the linear and the angular momentum of its bodies; the rest of their rigid
-motions carries neither. With P what bodies have of their clusters' motion and M their masses, that rest has 1 + β
-times their inertia (`olovsson2005`):
+A cluster has the rigid motion R that has the linear and angular momentum of its bodies; the remainder of the bodies'
+rigid motions carries no momentum. With the projection P of bodies' motions onto those of their clusters, and their
+masses M, the remainder has 1 + β times the physical inertia (`olovsson2005`):
 
     M* = M + β (M − Pᵀ M P),    M*⁻¹ f = P a + (a − P a) / (1 + β),    a = M⁻¹ f.
 
-What is at rest knows no masses, and a cluster that moves as one feels its own.
+Static equilibrium does not depend on the masses, and a cluster that moves as a rigid body has its physical mass.
 """
 
 from typing import NamedTuple
@@ -18,12 +18,12 @@ from runningbond.scene import Array, Unsigned
 
 
 class Clusters(NamedTuple):
-    """Which bodies are in clusters, and what they have of the motion of these."""
+    """Which bodies are in clusters, and how they contribute to the motion of their clusters."""
 
-    freedom: Unsigned  # (n, 3) translations and rotation of each body that is in a cluster
+    freedom: Unsigned  # (n, 3) indices in the motion of the translations and the rotation of each body in a cluster
     cluster: Unsigned  # (n,) its cluster
-    arm: Array  # (n, 2) its centroid, from that of the cluster [m]
-    # (n, 3) its part of the cluster's mass, its mass over the cluster's moment of inertia [1/m²], and its part of that
+    arm: Array  # (n, 2) its centroid relative to that of the cluster [m]
+    # (n, 3) its fraction of the cluster's mass, mass over the cluster's inertia [1/m²], fraction of that inertia
     part: Array
     more: float = 0.0  # β
 
@@ -33,7 +33,7 @@ class Clusters(NamedTuple):
         return len(np.unique(self.cluster))
 
     def energy(self, velocity: Array, mass: Array) -> float:
-        """Kinetic energy at a velocity ``(nd,)`` beyond that of masses ``(nd,)`` [J]."""
+        """Kinetic energy at a velocity ``(nd,)`` in excess of that of the masses ``(nd,)`` [J]."""
         if not len(self.cluster):
             return 0.0
         motion = np.zeros((self.number, 3))
@@ -50,7 +50,7 @@ NO_CLUSTERS = Clusters(_NONE.reshape(0, 3), _NONE, np.zeros((0, 2)), np.zeros((0
 
 @kernel
 def sum_up(freedom: Unsigned, cluster: Unsigned, arm: Array, part: Array, source: Array, motion: Array) -> None:
-    """Write the motions of clusters ``(nc, 3)`` with the momentum that their bodies have in ``source`` ``(nd,)``."""
+    """Write the motions of clusters ``(nc, 3)`` that have the momentum of their bodies in ``source`` ``(nd,)``."""
     motion[:] = 0.0
     for k in range(cluster.size):
         u, v, spin = source[freedom[k, 0]], source[freedom[k, 1]], source[freedom[k, 2]]

@@ -1,4 +1,4 @@
-"""A load held until the wall is at rest or in collapse: when it counts as the one, and when as the other."""
+"""Holding a load until the wall is at rest or collapses, and the criteria for both."""
 
 import math
 from dataclasses import dataclass
@@ -10,37 +10,37 @@ from .run import Observer, Run, no_observer
 from .state import State
 
 CALM = 3
-"""Looks in a row at which a wall must be balanced to be at rest: one in full motion may pass through balance."""
+"""Consecutive checks at which a wall at rest must be balanced: a moving wall may pass through balance."""
 
 U_CRIT = 0.05
-"""Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_sizes`).
+"""Displacement beyond which a wall that does not slow down has collapsed, in block sizes (`Scene.block_sizes`).
 
-A wall without weight may slip as far and be caught by the pressure that the slip itself brings about; loaded slowly
-enough it does not.
+A wall without weight may slip that far and then be held by the pressure that the slip itself causes; if it is loaded
+slowly enough it does not.
 """
 
 DRAGGED = 50_000
-"""Steps after which a wall that neither rests nor falls, and does not get on steadily, is damped not to be dragged on.
+"""Steps after which a wall that neither rests, falls nor moves steadily gets a damping that does not drag on drift.
 
-Contacts that slip without an end may shake for as long, and local damping drags on what drifts while it shakes. What
-speeds up all the same is left alone: damping that is combined takes more of a fall that rings.
+Contacts that slip without end may vibrate for that long, and local damping slows down what drifts while it vibrates.
+Walls that move steadily are left alone: combined damping dissipates more of a fall that vibrates.
 """
 
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
-"""What a wall does under a load."""
+"""Response of a wall to a load."""
 
 
 @dataclass(frozen=True)
 class Criteria:
-    """When a held load has been borne, and when it has brought the wall down."""
+    """Criteria for rest and collapse under a held load."""
 
-    # displacement [m] of any body, or ``(n,)`` of each, since the load was raised: the unit in which
-    # `CollapseDetector` measures whether a wall that does not slow down is in collapse
+    # displacement [m] of any body, or ``(n,)`` of each, since the load was raised: the unit in which `CollapseDetector`
+    # measures whether a wall that does not slow down has collapsed
     collapse: float | Array
-    rest: float = 1e-5  # unbalanced force, in the system's units, below which the wall is at rest
-    budget: int = 2_000_000  # steps after which the question is left undecided
-    interval: int = 200  # steps between two looks
-    dragged: float = DRAGGED  # steps after which what drifts is not dragged on
+    rest: float = 1e-5  # unbalanced force, in the system's force units, below which the wall is at rest
+    budget: int = 2_000_000  # steps after which the verdict is undecided
+    interval: int = 200  # steps between two checks
+    dragged: float = DRAGGED  # steps after which damping no longer drags on drift (`DRAGGED`)
 
 
 def settle(
@@ -52,7 +52,7 @@ def settle(
     *,
     sudden: bool = False,
 ) -> Verdict:
-    """Hold a load until the wall rests or falls, and say which; see `hold_load`."""
+    """Hold a load until the wall rests or falls, and return the verdict; see `hold_load`."""
     return hold_load(run, state, multiplier, criteria, observe, sudden=sudden)[0]
 
 
@@ -65,16 +65,16 @@ def hold_load(
     *,
     sudden: bool = False,
 ) -> tuple[Verdict, Array | None]:
-    """Hold a load until the wall rests or falls; of a fall, also the motion ``(nd,)`` when it had come half as far.
+    """Hold a load until the wall rests or falls; return also the motion ``(nd,)`` half-way to the collapse, or None.
 
-    It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
-    and does not slow down (`CollapseDetector`), so that a wall that slips and is caught is not mistaken for one in
-    collapse; one on which a `sudden` load was put may give way elastically first.
+    The wall rests if the unbalanced force is below the threshold at `CALM` consecutive checks. It falls if it moves far
+    without slowing down (`CollapseDetector`); a wall that slips and is stopped does not. A wall under a load that is
+    applied at once (`sudden`) may deform elastically first.
 
     Raises
     ------
     Unstable
-        If it spends more energy than the load and the state at the start can have supplied.
+        If more energy is spent than the load and the initial state can have supplied.
     """
     start, given = state.motion.copy(), run.given(state)
     detector = CollapseDetector(elastic=sudden or run.system.weightless)
@@ -97,32 +97,33 @@ def hold_load(
 
 
 class CollapseDetector:
-    """Whether a motion is a collapse: it has come a unit, and no slower over the last half of its way than before.
+    """Detector of collapse: the wall has moved by one unit, and no slower in the second half than before.
 
-    `EARLY` is enough where the same held when it had come half as far. A motion that does slow down is a collapse
-    once it has come `FARTHEST` doublings of the unit.
+    A distance of `EARLY` is enough if the same held at half of it. A motion that does slow down is a collapse at the
+    last of the marks, ``2**FARTHEST`` units.
 
     Parameters
     ----------
     elastic
-        Whether springs may take up a good part of the unit, so that it has to come the whole: under a load put on at
-        once, or in a wall without weight, whose joints hold by nothing but what the load presses them together.
+        Whether elastic deformation may reach a good part of the unit, so that the wall must move the whole unit: under
+        a suddenly applied load, or without weight, where only the load presses the joints together.
     """
 
     FARTHEST = 4
-    """Doublings after which a motion that does slow down counts as collapse all the same."""
+    """Number of doublings of the unit after which a motion that does slow down still counts as a collapse."""
 
     SLACK = 1.1
-    """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
+    """Factor on the time per distance up to which nothing has slowed down: sliding contacts vary their speed."""
 
     EARLY = 0.5
-    """Part of the unit, a power of two, after which a motion that never slowed is a collapse.
+    """Part of the unit, a power of two, after which a motion that never slowed down is a collapse.
 
-    Dry walls that were caught had slowed by then, and a fall at constant speed takes twice the steps for the whole.
+    Dry walls that came to a stop had slowed down by then, and a fall at constant speed takes twice the steps for one
+    unit.
     """
 
     def __init__(self, *, elastic: bool = False) -> None:
-        # Steady at EARLY for the second time, or at the unit for the first, is at the fourth mark, or the third.
+        # The fourth mark is EARLY (steady for the second time); if elastic, the third is the unit.
         first = -2 if elastic else int(math.log2(self.EARLY)) - 3
         self._marks = [2.0**k for k in range(first, self.FARTHEST + 1)]
         self._passed: list[int] = []
@@ -130,22 +131,22 @@ class CollapseDetector:
 
     @property
     def marks(self) -> int:
-        """Marks that were passed, each twice as far as the one before."""
+        """Number of marks passed, each twice as far as the one before."""
         return len(self._passed)
 
     @property
     def steady(self) -> bool:
-        """Whether it had not slowed over the last half of its way."""
+        """Whether the motion had not slowed down over the last half of its distance."""
         return self._steady > 0
 
     def goes_on(self, moved: float, steps: int) -> bool:
-        """Whether a wall that has moved so far after so many steps is in collapse."""
+        """Whether a wall that has moved this far after this many steps has collapsed."""
         while self.marks < len(self._marks) and moved > (mark := self._marks[self.marks]):
             self._passed.append(steps)
             if len(self._passed) >= 3:
                 first, second, third = self._passed[-3:]
-                # The way from the second mark to the third is twice as long as that from the first to the second.
-                # Marks passed in one look say nothing of the speed.
+                # The distance from the second mark to the third is twice that from the first to the second. Marks
+                # passed within one check contain no information on the speed.
                 steady = 0 < third - second <= 2 * self.SLACK * (second - first)
                 self._steady = self._steady + 1 if steady else 0
             if self._steady >= (1 if mark >= 1 else 2) or self.marks == len(self._marks):

@@ -1,4 +1,4 @@
-"""The collapse of a wall by steps of constant load, each held until the wall rests or falls."""
+"""The collapse load of a wall, by steps of constant load, each held until the wall rests or falls."""
 
 import math
 from collections.abc import Callable
@@ -25,25 +25,26 @@ from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
 FIRST_STEP = 0.05
-"""First load step, in live loads as large as the largest dead one (for a weightless wall, as the strongest joint)."""
+"""First load step: largest live force on a block over its weight (weightless: over the strongest joint's strength)."""
 
 HALVINGS = 8
-"""Most halvings of the first step: loads that are smaller still would not be seen at rest."""
+"""Most halvings of the first step: still smaller loads could not be told apart from rest."""
 
 LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
-"""Multiplier, in first steps, and displacement, in block sizes, beyond which no collapse is looked for.
+"""Multiplier, in first steps, and displacement, in block sizes, beyond which the search for a collapse ends.
 
-So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
+At such displacements the small-displacement theory no longer holds, and the elastic displacement between two loads is
+more than the displacement that counts as collapse.
 """
 
 BEYOND_BOUND = 2.0
-"""Multiplier, in proved bounds, up to which a collapse is looked for all the same."""
+"""Multiplier, in proved upper bounds, up to which the search for a collapse still goes on."""
 
 LARGEST_ELASTIC = 20.0
-"""Displacement, in those of springs under a load that is proved too large, beyond which no collapse is looked for."""
+"""Displacement, in elastic displacements under a load proved too large, beyond which the search for a collapse ends."""
 
 DRAWN_OVERLAP = 0.02
-"""Overlap of joints in a mechanism, in largest displacements of a block, that is hardly seen."""
+"""Overlap of joints in a mechanism, in largest displacements of a block, that is barely visible in a picture."""
 
 BUDGET = 2_000_000
 """Time steps after which a load is left undecided."""
@@ -68,7 +69,7 @@ def collapse_by_steps(
     distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Find the load that brings a wall down.
+    """Find the load at which a wall collapses.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def collapse_by_steps(
     model
         Name of the model.
     run
-        Its blocks in motion.
+        The run of the wall's blocks.
     tolerance
         Relative width of the bracket.
     points
@@ -85,44 +86,45 @@ def collapse_by_steps(
     point_order : (np,) int
         Those points in the order in which the outcome lists their forces.
     is_self_locking
-        Whether joint forces balance any multiple of the live load; asked where no load brought the wall down.
+        Whether joint forces balance any multiple of the live load; called only where the verdict depends on it.
     bound
         Multiplier that is proved too large, if there is one.
     gives
-        Largest displacement of a block [m] under the live load times a multiplier while joints neither open nor slip,
-        and as the wall hangs on its ties, as far as it is known.
+        Largest displacement of a block [m] under a multiple of the live load while joints neither open nor slip, and
+        while the wall hangs on its ties, as far as it is known.
     bears
-        Whether joint forces balance the dead load, by all cracks of the run; asked where that brings the wall down.
+        Whether joint forces balance the dead load, considering all cracks of the run; called if the wall falls under
+        it.
     note
-        What the message is to say about the run besides.
+        What the message is to add about the run.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes; at least `GIVES` times
-        what the wall gives elastically under the `bound`, and of one with weight as far as it has come at rest.
+        Displacement at which a wall that does not slow down has collapsed, in block sizes; at least `GIVES` times the
+        elastic displacement under the `bound`, and for a wall with weight at least the displacement reached at rest.
     first_step
-        First load step; steps grow while they are borne and are bisected once one is not. One beyond the `bound` is
-        halved until it is not, or `HALVINGS` times.
+        First load step; steps grow while the wall carries them and are bisected once it does not. A first step beyond
+        the `bound` is halved until it is below it, at most `HALVINGS` times.
     budget
         Time steps after which a load is left undecided.
     distance
-        Displacement of the control point [m] to which the live load pushes a wall at finite displacements; by the
-        wall's smaller side where none is given, and no farther than where the multiplier has fallen to nothing.
+        Displacement of the control point [m] to which the live load pushes a wall at finite displacements; by default
+        the smaller side of the wall. The push ends earlier if the multiplier has fallen to zero.
     observe
-        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
+        Called with the run, its state and the multiplier every few hundred steps, e.g. to take snapshots.
 
     Returns
     -------
     Outcome
-        `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `curve` has every state at rest, and ends in the fall; `motion` is that of the fall, also under the
-        dead load. ``failed`` where the run makes up energy, as one with too long a time step does.
+        `lower` is the largest multiplier at which the wall came to rest, `upper` the smallest at which it fell. `curve`
+        has every state at rest, and ends in the fall; `motion` is the motion of the fall, also under the dead load. The
+        status is ``failed`` if the run creates energy, as it does with too long a time step.
     """
     system, sizes = run.system, scene.block_sizes[run.system.owner]
     criteria = Criteria(collapse=collapse * sizes, budget=budget)
-    first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
+    first = first_step / (system.measure(system.live) or 1.0)  # pins may carry all of the live load
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
     note = joined(note, beam_note(scene), ends_note(scene, points))
     try:
-        # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
+        # A second thread of the linear algebra gains nothing on blocks this small, and waits at every step.
         with threadpool_limits(limits=1, user_api="blas"):
             if scene.is_led or run.system.contacts is not None:
                 led = partial(collapse_of_led, outcome, scene, run, tolerance, points, point_order)
@@ -141,7 +143,7 @@ def collapse_by_steps(
     outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears)
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
-        message = "moves as far under its dead load as counts as collapse"
+        message = "moves under its dead load as far as counts as collapse"
         outcome = replace(outcome, status="undecided", message=message, motion=np.zeros((0, 3)))
     elif outcome.status == result.verdict == "undecided" and not result.interrupted:
         note = joined(note, f"each load was followed for at most {budget * run.dt:.2g} s")
@@ -162,11 +164,11 @@ def _search(
     elastic: float,
     observe: Observer,
 ) -> LoadSteps:
-    """Bring the load up, and count as a collapse nothing that an `elastic` displacement [m] at a bound may be."""
+    """Raise the load until the wall falls; the collapse criterion exceeds the `elastic` motion [m] at the bound."""
     sizes = scene.block_sizes[run.system.owner]
-    tolerance = tolerance / 2 if run.interface.law.can_break else tolerance  # the bracket is wider by its last step
+    tolerance = tolerance / 2 if run.interface.law.can_break else tolerance  # the last step is added to the bracket
     criteria = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic))
-    # The first steps of a weightless wall may be millionths of what brings it down.
+    # The first steps of a weightless wall may be millionths of its collapse load.
     most = max(LARGEST_LOAD * first, BEYOND_BOUND * (bound or 0.0))
     if bound and 0 < bound < first:
         first *= 2.0 ** max(-HALVINGS, math.floor(math.log2(bound / first)))
@@ -183,13 +185,13 @@ def _search(
 
 
 def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, collapse: float) -> str:
-    """What there is to say of the stiffness of joints: at rest, or in a fall, under the dead load."""
+    """Note on the stiffness of the joints, from the state at rest or in the fall under the dead load; may be empty."""
     state, law, area = result.rests[0][1] if result.rests else result.fallen, run.interface.law, run.interface.area
     if state is None:
         return ""
     opening, _, normal, _ = run.tractions(state)
     springs = law.stiffest * area
-    # What is crushed is no overlap, and what has closed overlaps by less than without growth of its stiffness.
+    # Crushing is not overlap, and closed joints overlap less than they would if their stiffness did not grow.
     overlap = float(np.minimum(-opening, -normal / law.normal_stiffness).max(initial=0.0))
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
@@ -224,17 +226,18 @@ def _judge(
     if result.upper is None or result.lower is None or result.fallen is None:
         return _never_fallen(outcome, scene, run, result, is_self_locking)
     motion = _mechanism(scene, run, _fall(run, result, result.fallen))
-    # A load that grows by a step overshoots to twice it at most, and what breaks stays broken.
+    # A load that rises by a step overshoots to at most twice the step, and what breaks stays broken.
     overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
     upper = result.upper + overshoot
     outcome = replace(outcome, lower=result.lower, upper=upper, motion=motion)
-    # The dead load came on at once, in a motion of no account, and may do all but no work later on.
+    # The motion under the suddenly applied dead load does not count; afterwards that load may do almost no work.
     lost = run.unaccounted(result.fallen, since=result.rests[0][1])
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     moved = run.system.farthest(result.borne.motion - result.rests[0][1].motion, criteria.collapse)
     if moved > 1 and is_self_locking():
-        message = "self-locking: it gives as far at rest as counts as collapse, and joint forces balance any multiple"
+        far = "at rest it has moved as far as counts as collapse"
+        message = f"self-locking: {far}, and joint forces balance any multiple of the load"
         return replace(outcome, status="unbounded", lower=None, upper=None, motion=np.zeros((0, 3)), message=message)
     if result.verdict == "undecided":
         return replace(outcome, message="the budget ran out inside this bracket: the wall neither rested nor fell")
@@ -253,17 +256,17 @@ def _judge(
 def _never_fallen(
     outcome: Outcome, scene: Scene, run: Run, result: LoadSteps, is_self_locking: Callable[[], bool]
 ) -> Outcome:
-    """Outcome of a wall that no load brought down."""
+    """Outcome of a wall that did not fall under any load."""
     self_locking = is_self_locking()
     if self_locking and result.verdict == "stable":
-        message = "self-locking: it bore every load up to the largest, and joint forces balance any multiple of it"
+        message = "self-locking: it carried every load tried, and joint forces balance any multiple of the load"
         return replace(outcome, status="unbounded", message=message)
-    message = f"it bore every load tried, the largest of them {result.lower:.3g}"
+    message = f"it carried every load tried, up to {result.lower:.3g}"
     if result.far and result.borne is not None:
         moved = np.hypot(*run.system.motion_of_blocks(result.borne.motion - result.rests[0][1].motion)[:, :2].T)
         block = scene.blocks.name(int(moved.argmax()))
         message += (
-            f", at which {block} has come {moved.max():.2g} m: too far for small displacements, or nothing holds it"
+            f", at which {block} has moved {moved.max():.2g} m: too far for small displacements, or nothing holds it"
         )
     if result.verdict != "stable":
         message = "the budget ran out: the wall neither rested nor fell"
@@ -272,14 +275,14 @@ def _never_fallen(
 
 
 def _mechanism(scene: Scene, run: Run, motion: Array) -> Array:
-    """Motion of the blocks ``(nb, 3)`` in a motion of the run ``(nd,)``, the fastest corner moving by one metre."""
+    """Motion of the blocks ``(nb, 3)`` in a motion of the run ``(nd,)``; the fastest corner moves by one metre."""
     return fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(motion))
 
 
 def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
-    """Motion of the fall, ``(nd,)``: as late as the wall can be drawn in it.
+    """Motion of the fall, ``(nd,)``, from the latest state from which the wall can still be drawn.
 
-    Gaps that earlier loads opened may close in a fall; drawn on the undeformed wall, blocks would lie in each other.
+    Gaps that earlier loads opened may close in a fall; drawn on the undeformed wall, blocks would overlap each other.
     """
     motions = [fallen.motion - start for start in result.fall_starts]
     for motion in motions:
@@ -291,9 +294,9 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
 
 
 def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
-    """Control displacement from the first rest on, and multiplier, of the states at rest, then of the fall.
+    """Curve of the states at rest, then of the fall: control displacement since the first rest, and multiplier.
 
-    And their reactions and works.
+    Also their reactions and works.
     """
     states = result.rests
     if result.fallen is not None and result.upper is not None:

@@ -1,4 +1,4 @@
-"""When contacts are found anew at finite displacements, and how their history is handed on."""
+"""When contacts are searched for again at finite displacements, and how their history is passed on."""
 
 from dataclasses import replace
 
@@ -12,23 +12,23 @@ from .state import PLASTIC_SLIP, State, frames_of, history_free_of_shear
 from .system import BlockSystem, ContactSearch, Interface
 
 SPEED_FACTOR = 2
-"""Times the speed that bodies have, and that loads and ties alone would give them, with which they may move on."""
+"""Safety factor on the speed of bodies and on their accelerations by loads and ties, to predict how far they move."""
 
 STEPS_AHEAD = 128
-"""Steps of the fastest body within which sides count as near at least: a search takes as long as hundreds of them."""
+"""Time steps of the fastest body that the search distance covers at least: a search costs hundreds of steps."""
 
-HELD = 1.1
-"""Margin in openings of joints that are not broken yet."""
+OPENING_MARGIN = 1.1
+"""Factor on the opening of unbroken joints in the search distance."""
 
 MOST_STEPS = 1000
-"""Steps between two looks at how far the bodies have moved."""
+"""Most steps between two checks of how far the bodies have moved."""
 
-KEPT = 2
-"""Interfaces that are kept: a state that is looked at may be on the contacts before those of the one that goes on."""
+INTERFACES_KEPT = 2
+"""Number of interfaces kept: an observed state may still have the contacts before those of the state that goes on."""
 
 
 class ContactUpdate:
-    """Keeps the contacts of states up to date as the bodies of a system move."""
+    """Update of the contacts of states as the bodies of a system move."""
 
     def __init__(self, system: BlockSystem, search: ContactSearch) -> None:
         self._system, self._search = system, search
@@ -45,22 +45,22 @@ class ContactUpdate:
             if made is contacts:
                 return interface
         interface = self._search.interface_on(contacts, self._system)
-        # Bodies that have flown apart have no frequency, and may meet again.
+        # Bodies that have flown apart have no frequency, but may meet again.
         closer = interface.closer and max(interface.closer, undeformed.closer or 0.0)
         bound = max(interface.frequency_squared, undeformed.frequency_squared)
         interface = replace(interface, frequency_squared=bound, closer=closer)
-        self._made = [(contacts, interface), *self._made[: KEPT - 1]]
+        self._made = [(contacts, interface), *self._made[: INTERFACES_KEPT - 1]]
         return interface
 
     def acceleration(self, load: Array) -> float:
-        """Largest acceleration that a load ``(nd,)`` [N] alone gives any point of a body [m/s²]."""
+        """Largest acceleration of any point of a body under a load ``(nd,)`` [N] alone [m/s²]."""
         return self._reach((np.abs(load) / self._system.mass)[self._system.rigid], np.zeros(2))
 
     def steps_until_next_look(self, state: State, dt: float, acceleration: float, multiplier: float = 0.0) -> int:
-        """Steps of a length [s] in which the bodies may have moved as far as no contact can be missed.
+        """Number of time steps `dt` [s] after which bodies may have moved so far that a contact could be missed.
 
-        None, 0, where they have used up three quarters of that way. Loads alone accelerate them by so much [m/s²] and,
-        besides, by a multiple of the live load.
+        Zero if they have used up three quarters of that distance. `acceleration` [m/s²] is that by constant loads
+        alone; the `multiplier` of the live load adds to it.
         """
         contacts, rigid = contacts_of(state), state.motion[self._system.rigid]
         way = contacts.margin / 2 - self._search.deformation(state.motion)
@@ -75,9 +75,9 @@ class ContactUpdate:
         return int(np.clip(time / dt, 1, MOST_STEPS))
 
     def renew(self, state: State, interface: Interface, dt: float) -> Interface:
-        """Find the contacts of a state anew, in place, hand their history on and return the interface on them.
+        """Search for the contacts of a state again, in place, pass on their history and return the interface on them.
 
-        The contacts so far are those of `interface`; steps are of `dt` [s].
+        The contacts so far are those of `interface`; `dt` is the time step [s].
         """
         search, before, history = self._search, contacts_of(state), state.history
         rested = search.resting(before, state.motion)
@@ -87,22 +87,22 @@ class ContactUpdate:
         state.friction += float(interface.area @ history[FRICTION_WORK])
         state.absorbed += float(interface.area @ history[DAMPED_WORK])
 
-        # What flies moves by many a step's way before the next look, and may be as deep in a block by then; what has
-        # struck one may be deeper, and is not to be lost sight of before it is thrown back.
+        # A body in flight may move on by many steps before the next check, and penetrate a block by as much; one that
+        # has hit a block may be deeper, and must be kept until it is thrown back.
         fast = STEPS_AHEAD * self._travel(state.velocity) * dt
         deep = -2 * opening.min(initial=0.0)
-        # Nor is a joint that is not broken yet, however far it has opened.
+        # A joint that is not broken yet must be kept too, however far it has opened.
         whole = (interface.law.tension > 0) & (interface.law.damage(history) < 1)
-        drawn = HELD * opening[whole].max(initial=0.0)
+        drawn = OPENING_MARGIN * opening[whole].max(initial=0.0)
         contacts = search.find(state.motion, max(search.outline.margin, fast, deep, drawn))
-        # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side,
-        # which goes on with the area that it had: another stiffness would jolt it.
+        # Match ends of the same two sides; or, for a corner that has rolled over, the same corner on the same side,
+        # which keeps its area: another stiffness would jolt it.
         turned = position_of(rested, search.resting(contacts, state.motion))
         same = position_of(before.key, contacts.key)
         on, still = turned >= 0, same >= 0
         area, glued = contacts.area.copy(), np.zeros(len(contacts), dtype=bool)
         area[on & ~still] = before.area[turned[on & ~still]]
-        # Sides that met later bear by more as they come to overlap by more, and go on with it.
+        # Sides that met later carry more as their overlap grows, and keep the larger area.
         kept_area = before.area[same[still]]
         area[still] = np.where(contacts.joint[still] >= 0, kept_area, np.maximum(area[still], kept_area))
         glued[still] = before.glued[same[still]]
@@ -112,7 +112,7 @@ class ContactUpdate:
         state.history, bore = history_free_of_shear(renewed, state.motion), state.bears
         state.bears = frames_of(renewed, state.contacts)
         state.bears[still] = bore[same[still]]
-        # Points go on with all that they have been through; those of a corner that has turned on slip as it does now.
+        # Points keep their whole history; those of a corner that has rolled over keep it relative to the present slip.
         (keys, ends), (new_keys, new_ends) = search.points(before), search.points(state.contacts)
         kept, new = position_of(keys, new_keys), state.history[plastic_slip].copy()
         origin = np.where((new_ends >= 0) & (kept < 0), np.append(turned, -1)[new_ends], -1)
@@ -122,32 +122,32 @@ class ContactUpdate:
         state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
         state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
-        share = np.zeros(len(kept))  # of its area that a point had before
+        share = np.zeros(len(kept))  # fraction of its area that a point had before
         share[moved] = 1.0
         share[kept >= 0] = np.minimum(1.0, interface.area[kept[kept >= 0]] / renewed.area[kept >= 0])
         state.friction += _spread(renewed, state, share)
         return renewed
 
     def _travel(self, velocity: Array) -> float:
-        """At most half of how fast any two points of bodies come apart at a velocity ``(nd,)`` [m/s]."""
+        """Upper bound of half the speed at which any two points of bodies separate at a velocity ``(nd,)`` [m/s]."""
         return self._apart(velocity[self._system.rigid])
 
     def _apart(self, rigid: Array) -> float:
-        """At most half of how far any two points of bodies come apart in a motion ``(n, 3)``, but for deformation."""
+        """Upper bound of half the distance by which two points of rigid bodies separate in a motion ``(n, 3)`` [m]."""
         u, v = rigid[:, 0], rigid[:, 1]
         return self._reach(rigid, np.array([(u.max() + u.min()) / 2, (v.max() + v.min()) / 2]))
 
     def _reach(self, rigid: Array, common: Array) -> float:
-        """At most how far any point of a body goes in a motion ``(n, 3)`` beyond what all have in common ``(2,)``."""
+        """Upper bound of how far points of bodies move in a motion ``(n, 3)`` relative to a translation ``(2,)``."""
         beyond = np.hypot(rigid[:, 0] - common[0], rigid[:, 1] - common[1])
         return float((beyond + np.abs(rigid[:, 2]) * self._search.outline.reach).max())
 
 
 def _spread(interface: Interface, state: State, share: Array) -> float:
-    """Spread what points bear over more area than they had a `share` of, in place; the energy that is lost [J].
+    """Spread the forces of points whose area has grown (`share` is the old part), in place; return the energy lost [J].
 
-    What has come to overlap meets as it lies, without pressure or shear: a point's force goes on and not its traction,
-    else springs would be pressed by nobody. Points of a law without a plastic closure go on with their traction.
+    New contact area starts without pressure or shear: the force of a point is kept and not its traction, otherwise
+    springs would be compressed without a cause. Points of a law without a plastic closure keep their traction.
     """
     law, history, closed = interface.law, state.history, interface.law.law.closed
     if closed is None:
@@ -164,7 +164,7 @@ def _spread(interface: Interface, state: State, share: Array) -> float:
 
 
 def _borne(interface: Interface, opening: Array, slip: Array, history: Array) -> tuple[Array, Array]:
-    """Tractions ``(2, np)`` [Pa] of points, and the energy that they would give back ``(np,)`` [J/m²]."""
+    """Tractions ``(2, np)`` [Pa] of points, and their recoverable energy ``(np,)`` [J/m²]."""
     law, tractions = interface.law, np.zeros((2, interface.law.points))
     law.kernel(opening, slip, law.parameters, history.copy(), 0.0, *tractions)
     return tractions, law.energy(opening, tractions[0], tractions[1], history)
@@ -176,7 +176,7 @@ def contacts_of(state: State) -> Contacts:
     Raises
     ------
     TypeError
-        If it is a state at small ones.
+        If the state is one at small displacements.
     """
     if state.contacts is None:
         raise TypeError("finite displacements need a state with contacts: begin with State.at_rest of their system")

@@ -19,17 +19,17 @@ def ramp(run: Run, state: State, start: float, stop: float, steps: int) -> None:
 class Pushover:
     """A wall pushed at a prescribed speed."""
 
-    curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, piece by piece
+    curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, interval by interval
     peak: float  # largest multiplier of the curve
-    rate_error: float  # change of the peak when the speed was last halved; inf if it never settled
+    rate_error: float  # change of the peak when the speed was last halved; inf if it was never halved
     state: State  # the wall at the end
 
 
 def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Pushover:
-    """Push a wall until its control point has moved a distance [m], from a copy of a state.
+    """Push a wall until its control point has moved a distance [m], starting from a copy of a state.
 
-    The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the
-    multiplier follows. It takes `steps` if everything moves as far as the control point, and fewer as a rule.
+    The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the multiplier
+    follows. The push takes `steps` if everything moves as far as the control point, and usually fewer.
     """
     system, state = run.system, start.copy()
     power = float(distance * np.abs(system.live).sum()) / (steps * run.dt)

@@ -1,7 +1,7 @@
-"""The dead load put on a wall: at once, and slowly where that breaks joints, or brings down walls, that it need not.
+"""Application of the dead load: at once; or slowly if that breaks joints or makes a wall fall that need not.
 
-Preloads of ties come with it. A beam that is held at its height from then on keeps what thrust there is, and ties that
-have drawn blocks along have lost their preload: there the load comes slowly as well where joints have slid.
+Preloads of ties come with it. A beam that is held at its height from then on keeps its remaining thrust, and ties that
+have dragged blocks along have lost their preload: in both cases the load also comes slowly if joints have slid.
 """
 
 from collections.abc import Callable
@@ -19,20 +19,20 @@ from .controls import ramp
 from .run import Observer, Run, no_observer
 from .state import State
 
-ELASTIC = 1 / 4
-"""Part of the dead load that is put on at once where all of it is too much: it overshoots to half."""
+SUDDEN_PART = 1 / 4
+"""Part of the dead load that is applied at once if all of it is too much: it overshoots to twice this part."""
 
-HARDLY = 1 / 64
-"""As `ELASTIC`, where joints must not slide either: after a quarter at once thrusts were up to two fifths too small."""
+SUDDEN_PART_NO_SLIP = 1 / 64
+"""As `SUDDEN_PART`, where joints must not slide either: after a quarter at once, thrusts were up to 40 % too small."""
 
-SLID = 1e-3
-"""Part of the work of the dead load and of preloads beyond which what friction took of it is no rounding."""
+SLIP_WORK = 1e-3
+"""Fraction of the work of dead load and preloads above which friction work is more than rounding: joints have slid."""
 
-TURNS = 200
-"""Turns in which ties are tightened to the rest of their preloads meanwhile."""
+TIGHTENINGS = 200
+"""Number of increments in which ties are tightened while the rest of the load comes on."""
 
 GROWTH_TIMES = 4
-"""Times in which the rest of it grows, in times that the wall takes to rest under that part."""
+"""Duration of the rest of the load, in times that the wall takes to rest under the first part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,49 +41,50 @@ class UnderDeadLoad:
 
     state: State
     verdict: Verdict
-    rest: int  # steps that it took to rest under a load that was put on at once
+    rest: int  # steps to rest under a load that was applied at once
     steps: int  # steps taken, on every path
 
 
 def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observer) -> UnderDeadLoad:
     """Bring a wall to rest under its dead load.
 
-    A load that is put on at once overshoots to twice itself, which matters to joints that keep what it does, and to
-    walls that sway far: where any joint is damaged, or crushed, or the wall falls, it is loaded again, slowly. Friction
-    remembers too, of which a mechanism asks nothing unless its beam is held at its height, and what bore the overshoot
-    then presses too little; or ties are preloaded, which go slack, and leave blocks apart, as these slide too far.
+    A load that is applied at once overshoots to twice its value. This matters to joints with irreversible damage or
+    crushing, and to walls that sway far: if any joint is damaged or crushed, or the wall falls, the load is applied
+    again, slowly. Friction is irreversible too, but a mechanism does not depend on it unless the beam is held at its
+    height (joints that carried the overshoot then press too little) or ties are preloaded (blocks slide too far: ties
+    go slack).
 
     Raises
     ------
     Unstable
-        As of `hold_load`.
+        As in `hold_load`.
     """
-    state, keeps = State.at_rest(run.system), keeps_what_it_does(run)
+    state, keeps = State.at_rest(run.system), keeps_damage(run)
     held = len(run.system.late) > 0 or bool(run.system.ties.slack.any())
     unseen = keeps or held
     verdict = settle(run, state, 0.0, criteria, no_observer if unseen else observe, sudden=True)
-    # What has fallen may have no contacts left to be broken, or have swayed twice as far as the load alone moves it.
+    # A fallen wall may have no contacts left that could be broken, or have swayed twice as far as under the load alone.
     if _is_broken(run, state) or verdict == "collapse":
         return _slowly(run, criteria, observe, state.steps)
     if held and verdict == "stable" and _has_slid(run, state):
-        return _slowly(run, criteria, observe, state.steps, HARDLY)
-    for _ in range(CALM if unseen else 0):  # observers take a wall to be at rest that is so at as many looks
+        return _slowly(run, criteria, observe, state.steps, SUDDEN_PART_NO_SLIP)
+    for _ in range(CALM if unseen else 0):  # observers take a wall as at rest after this many checks at rest
         observe(run, state, 0.0)
     return UnderDeadLoad(state, verdict, state.steps, state.steps)
 
 
 def fall_under_dead_load(law: KernelLaw, bears: Callable[[], bool]) -> tuple[Literal["infeasible", "undecided"], str]:
-    """Status and message of a wall that fell as its dead load was put on, of joints of a law.
+    """Status and message for a wall that fell as its dead load was applied, given the law of its joints.
 
-    It proves nothing where these keep their strength and, which `bears` says, balance that load.
+    The fall proves nothing if the joints keep their strength and balance the dead load (`bears`).
     """
     if not law.can_break and bears():
-        return "undecided", "collapses under its dead load as it was put on, though forces exist that balance it"
+        return "undecided", "collapses under its dead load as it is applied, although forces exist that balance it"
     return "infeasible", "collapses under its dead load"
 
 
-def keeps_what_it_does(run: Run) -> bool:
-    """Whether joints may be damaged or crushed for good, by a load that would not do so had it come slowly."""
+def keeps_damage(run: Run) -> bool:
+    """Whether a suddenly applied load may damage or crush joints for good that a slowly applied one would not."""
     law = run.interface.law.law
     return law.damage is not None or PLASTIC_CLOSURE in law.history
 
@@ -95,15 +96,15 @@ def _is_broken(run: Run, state: State) -> bool:
 
 def _has_slid(run: Run, state: State) -> bool:
     ledger = run.ledger(state)
-    return ledger.friction > SLID * (ledger.external - min(ledger.ties, 0.0))  # what preloads gave is work as well
+    return ledger.friction > SLIP_WORK * (ledger.external - min(ledger.ties, 0.0))  # preloads do work as well
 
 
-def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: float = ELASTIC) -> UnderDeadLoad:
-    """Put on a part of the dead load at once, and the rest evenly."""
+def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: float = SUDDEN_PART) -> UnderDeadLoad:
+    """Apply a part of the dead load at once, and the rest evenly."""
     state, system = State.at_rest(run.system), run.system
     grown = replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None, pushing=None)
     growing = run.of_system(grown)
-    shares = np.linspace(part, 1.0, (TURNS if len(system.ties) else 1) + 1)
+    shares = np.linspace(part, 1.0, (TIGHTENINGS if len(system.ties) else 1) + 1)
     _tighten(run, state, (part - 1.0) * system.ties.slack)
     verdict = settle(growing, state, part, criteria, sudden=True)
     rest = state.steps
@@ -111,14 +112,14 @@ def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: 
         for before_turn, share in pairwise(shares.tolist()):
             ramp(growing, state, before_turn, share, max(1, GROWTH_TIMES * rest // (len(shares) - 1)))
             _tighten(run, state, (share - before_turn) * system.ties.slack)
-        # The ledger has the dead load do its whole work.
+        # In the ledger the work done so far, by the growing load, is the work of the dead load.
         state.turned += state.external - float(system.dead @ state.motion)
         verdict = settle(run, state, 0.0, criteria, observe)
     return UnderDeadLoad(state, verdict, rest, before + state.steps)
 
 
 def _tighten(run: Run, state: State, by: Array) -> None:
-    """Shorten ties by so much each ``(nt,)`` [m], in place; the ledger has their preloads do their whole work."""
+    """Shorten ties by `by` ``(nt,)`` [m], in place; the ledger absorbs this, as if preloads did their full work."""
     before = run.ledger(state).ties
     state.stretch -= by
     state.absorbed += before - run.ledger(state).ties

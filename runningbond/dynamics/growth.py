@@ -1,4 +1,4 @@
-"""How the load of a wall grows from one load that is held to the next."""
+"""How the load of a wall grows from one held load to the next."""
 
 from dataclasses import dataclass, field
 
@@ -11,74 +11,74 @@ from .controls import ramp
 from .run import Run
 from .state import State
 
-FAR, FASTER = 1 / 3, 8
-"""Part of a bound of the load up to which a wall with a weight is loaded faster, and how much faster."""
+FAST_FRACTION, FASTER = 1 / 3, 8
+"""Fraction of the proved bound up to which the load of a wall with weight grows faster, and how much faster."""
 
-SOFTER = 2.0
-"""How much farther than where it was stiffest a wall goes with the load where it has begun to give way.
+SOFTENING_RATIO = 2.0
+"""Displacement per load, relative to the smallest observed, above which the wall has begun to yield.
 
-Until then it is loaded faster as well: what slips there slips one after the other all the same.
+Below that the load also grows faster: slips then still occur one after the other.
 """
 
-GIVES_WAY, LOOKS = 1.0, 8
-"""Motion, in units of collapse, at which a load grows no more, and looks at it in a step of the load: at those loads
-that bisection would try, so that models that see the same wall find the same bracket."""
+YIELD_DISPLACEMENT, LOOKS = 1.0, 8
+"""Displacement, in units of collapse, at which the load stops growing, and number of checks in a load step: they lie at
+the loads that bisection would try, so that models that see the same wall find the same bracket."""
 
 PAUSES, NEARLY_AT_REST = 10, 1e-3
-"""How often the load of a wall without weight pauses in a step, and the unbalanced force at which it grows again.
+"""Number of pauses in a load step of a wall without weight, and unbalanced force below which the load grows again.
 
-Such a wall has no pressure on its joints but what the load gives it, and slips for good wherever a wave takes that
-away. A wall with a weight chatters at such loads without end, and slow growth does it better.
+In such a wall the load alone presses the joints together, and joints slip for good wherever a wave takes that pressure
+away. A wall with weight would chatter at such loads without end; slow growth suits it better.
 """
 
 PAUSE_INTERVAL = 200
-"""Time steps of a pause between two looks."""
+"""Time steps of a pause between two checks."""
 
 
 @dataclass(eq=False)
 class Growth:
-    """How the load of a wall grows: slowly once the wall gives way, which is when the order of slips counts."""
+    """How the load of a wall grows: slowly once the wall yields, because only then does the order of slips matter."""
 
     run: Run
     criteria: Criteria
-    far: float  # multiplier up to which it grows faster whatever the wall does
-    unhurried: float  # steps in which it grows by the first step, or by an eighth where that is more
-    softest: float = np.inf  # least motion per multiplier that was seen, in units of collapse
-    slow: float = np.inf  # multiplier from which the wall gives way
-    # multipliers that growth has passed since the last one that grew, each with the wall then
+    far: float  # multiplier up to which the load grows faster in any case
+    unhurried: float  # steps in which it grows by the first step, or by an eighth of the load if that is more
+    softest: float = np.inf  # smallest displacement per multiplier observed, in units of collapse
+    slow: float = np.inf  # multiplier from which the wall yields
+    # multipliers passed in the last growth of the load, each with the state of the wall there
     passed: list[tuple[float, State]] = field(default_factory=list)
     steps: int = 0  # steps taken
 
     def reach(self, trial: float, state: State, start: float, share: float) -> tuple[float, State]:
-        """Raise the multiplier in a share of the unhurried steps; what it reached, and the wall then."""
+        """Raise the multiplier in this share of the unhurried steps; the multiplier reached, and the state there."""
         steps = self.unhurried * share
         if self.run.system.weightless:
             return self._in_parts(trial, state, start, steps, PAUSES * share)
         return self.passed_by(trial) or self.up_to(trial, state, start, steps)
 
     def passed_by(self, trial: float) -> tuple[float, State] | None:
-        """The multiplier, but for rounding, and a copy of the wall as it grew through it; None where it did not."""
+        """The multiplier (to rounding) and a copy of the wall as the load passed it; None if it did not."""
         for multiplier, state in self.passed:
             if np.isclose(multiplier, trial, rtol=1e-12, atol=0.0):
                 return multiplier, state.copy()
         return None
 
     def up_to(self, stop: float, state: State, start: float, steps: float) -> tuple[float, State]:
-        """Raise the multiplier in some steps, until the wall gives way; what it reached, and the wall then."""
+        """Raise the multiplier in so many steps, until the wall yields; the multiplier reached, and the state there."""
         begin, reached, self.passed = state.motion, start, []
         for look in range(1, LOOKS + 1):
             before, reached = reached, stop if look == LOOKS else start + (stop - start) * look / LOOKS
             state = self._onward(state, before, reached, max(1, round(steps / LOOKS)))
-            if self.run.system.farthest(state.motion - begin, self.criteria.collapse) > GIVES_WAY:
+            if self.run.system.farthest(state.motion - begin, self.criteria.collapse) > YIELD_DISPLACEMENT:
                 break
             self.passed.append((reached, state))
         return reached, state.copy()
 
     def _onward(self, state: State, start: float, stop: float, steps: int) -> State:
-        """The wall after the multiplier has grown: faster first, and slowly after all where it gave way to that."""
+        """The wall after the multiplier has grown: fast first, and again slowly if the wall yielded to that."""
         if stop <= self.far or (stop <= self.slow and self.softest < np.inf):
             grown, softness = self._grown(state, start, stop, max(1, round(steps / FASTER)))
-            if stop <= self.far or softness <= SOFTER * self.softest:
+            if stop <= self.far or softness <= SOFTENING_RATIO * self.softest:
                 self.softest = min(self.softest, softness)
                 return grown
             self.slow = start
@@ -94,7 +94,7 @@ class Growth:
         return grown, moved / (stop - start)
 
     def _in_parts(self, stop: float, state: State, start: float, steps: float, pauses: float) -> tuple[float, State]:
-        """Raise the multiplier of a wall without weight: it pauses, and falls where it cannot."""
+        """Raise the multiplier of a wall without weight, with pauses, until the wall does not come to rest in one."""
         grown, parts, reached = state.copy(), max(1, round(pauses)), start
         for part in range(1, parts + 1):
             before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
@@ -105,7 +105,7 @@ class Growth:
         return reached, grown
 
     def _pauses(self, state: State, multiplier: float, motion: Array) -> bool:
-        """Hold a load, in place, until the wall is nearly at rest; not where it has come far from a motion before."""
+        """Hold a load, in place, until the wall is nearly at rest; False if it moves far or never rests."""
         given = self.run.given(state)
         for _ in range(self.criteria.budget // PAUSE_INTERVAL):
             if self.run.unbalanced(state) < NEARLY_AT_REST:

@@ -1,8 +1,8 @@
-"""The highest frequency of a system whose joints are all closed, by Lanczos' method.
+"""Highest frequency of a system whose joints are all closed, by the Lanczos method.
 
-Bounds from each block alone hold whatever its neighbours do, as if each moved against its own shadow in a mirror; of a
-running bond, whose joints do not line up, no motion does that everywhere, and they are a fifth too high. Steps may be
-as much longer, with masses, springs and dashpots as they are.
+Bounds computed block by block hold whatever the neighbours do, as if each block moved against its own mirror image. In
+a running bond, whose joints do not line up, no motion does that everywhere, and the bounds are a fifth too high. Time
+steps may be longer by as much, with unchanged masses, springs and dashpots.
 """
 
 import math
@@ -18,36 +18,36 @@ from .system import BlockSystem, restrain
 from .time_step import stable_step
 
 STEPS = 60
-"""Most steps of Lanczos' method, which comes from below to a thousandth and has places where it hardly moves."""
+"""Most Lanczos steps; the method converges from below to a thousandth, and stagnates at times on the way."""
 
 ROUNDING = 1e-9
-"""Part of the largest frequency squared below which what is left of a motion is rounding."""
+"""Relative to the largest frequency squared, residual length below which the rest of a vector is rounding."""
 
 DIGITS = 6
-"""Digits that are kept of it: the last ones of a library's eigenvalues differ from machine to machine."""
+"""Significant digits kept of the eigenvalue: the last ones differ from machine to machine."""
 
 
 def with_highest_frequency(system: BlockSystem, viscous: float = VISCOUS) -> BlockSystem:
-    """Blocks at small displacements whose time steps go by their own highest frequency, in place of a bound.
+    """A system at small displacements whose time step follows from its own highest frequency instead of a bound.
 
-    The viscosity of the blocks themselves counts as a stiffness, as it does for the bound (`stable_step`), at the step
-    that goes with the joints' viscous damping ratio.
+    The viscosity of the blocks themselves counts as a stiffness, as it does in the bound (`stable_step`), at the step
+    that belongs to the viscous damping ratio of the joints.
     """
-    interface, root = system.interface, 1 / np.sqrt(system.mass)  # nothing for what is held
+    interface, root = system.interface, 1 / np.sqrt(system.mass)  # zero for held modes
     own = system.stiffness + 2 / stable_step(interface.frequency_squared, viscous, LOCAL) * system.viscosity
 
     def product(motion: Array) -> Array:
         moved = root * motion
         return root * (_closed_joints(system, moved) + own * moved)
 
-    # Without a pattern that a mode of the wall could be at right angles to.
+    # Random, because a pattern could be orthogonal to a mode of the wall.
     start = np.random.default_rng(0).standard_normal(len(root)) * (root > 0)
     closer = min(interface.frequency_squared, float(f"{_largest_eigenvalue(product, start):.{DIGITS}g}"))
     return replace(system, interface=replace(interface, closer=closer or None))
 
 
 def _closed_joints(system: BlockSystem, motion: Array) -> Array:
-    """Forces ``(nd,)`` against a motion, of springs in all joints."""
+    """Forces ``(nd,)`` that springs in all joints exert against a motion."""
     interface, force = system.interface, np.zeros_like(motion)
     opening, slip = interface.jumps(system.unrestrained(motion))
     law = interface.law
@@ -57,7 +57,7 @@ def _closed_joints(system: BlockSystem, motion: Array) -> Array:
 
 
 def _largest_eigenvalue(product: Callable[[Array], Array], vector: Array) -> float:
-    """Of a symmetric positive operator on vectors; each that is found is kept at right angles to all before."""
+    """Largest eigenvalue of a symmetric positive operator, with full reorthogonalisation of the Lanczos vectors."""
     basis: list[Array] = []
     diagonal: list[float] = []
     beside: list[float] = []
@@ -74,7 +74,7 @@ def _largest_eigenvalue(product: Callable[[Array], Array], vector: Array) -> flo
 
 
 def largest_of_tridiagonal(diagonal: Array, beside: Array) -> float:
-    """Largest eigenvalue of a symmetric matrix that Lanczos' method leaves; the first entry beside is of no use."""
+    """Largest eigenvalue of the tridiagonal matrix of the Lanczos method; the first entry of `beside` is not used."""
     matrix = np.diag(diagonal) + np.diag(beside[1:], 1) + np.diag(beside[1:], -1)
     return float(np.linalg.eigvalsh(matrix).max(initial=0.0))
 

@@ -1,12 +1,12 @@
-"""Inertia that lets a wall under slowly growing loads take longer steps: fictitious masses, as of dynamic relaxation.
+"""Fictitious inertia for longer time steps of walls under slowly growing loads, as in dynamic relaxation.
 
-What bears a load at rest knows no masses (`underwood1983`, `olovsson2005`), and what limits the step is a single block
-on its joints, which mostly turns: the corners have more leverage than their springs have stiffness. A block is made
-so heavy, in each of its three motions by itself, that none of these is faster than most blocks are in the slowest of
-them. The slowest vibrations of a wall, which it takes to come to rest, lie in that one, and stay nearly as they are.
+Static equilibrium does not depend on the masses (`underwood1983`, `olovsson2005`), and the time step is limited by a
+single block on its joints, mostly by its rotation: the corners have a long lever arm. Each block is made so heavy, in
+each of its three motions separately, that none of them is faster than the median block is in its slowest motion. The
+slowest vibrations of a wall, which decide how soon it rests, are mainly of that motion, and stay nearly unchanged.
 
-Slips start waves, which such blocks hold for longer: dashpots in the joints are four times as strong as elsewhere. With
-usual ones panel-12 takes one branch or another as the load's pace is changed by a tenth (docs/fem-study.md).
+Slips start waves, which such blocks keep longer: dashpots in the joints are four times as strong as elsewhere. With the
+usual ones panel-12 takes one branch or another if the loading rate changes by a tenth (docs/fem-study.md).
 """
 
 import numpy as np
@@ -18,13 +18,13 @@ from runningbond.scene import Array, Scene
 from .time_step import rigid_stiffness
 
 CALMER = 0.4
-"""The joints' viscous damping ratio at the highest frequency where inertia is fictitious."""
+"""Viscous damping ratio of the joints at the highest frequency, if inertia is fictitious."""
 
 
 def inertia_factors(scene: Scene, points: JointPoints, mass: Array) -> Array:
-    """Factors on the masses and on the moment of inertia of each block, ``(nb, 3)``, none below one.
+    """Factors on the masses and on the moment of inertia of each block, ``(nb, 3)``, at least one.
 
-    Blocks on pins, which move about them, and blocks that are held have none.
+    They are one for blocks on pins, which move about their pins, and for held blocks.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def inertia_factors(scene: Scene, points: JointPoints, mass: Array) -> Array:
     points
         Points of its joints.
     mass : (nb, 3) float
-        Mass, mass and polar moment of inertia of each block [kg, kg, kg m²], inf where it is held.
+        Mass, mass and polar moment of inertia of each block [kg, kg, kg m²], inf if the block is held.
     """
     normal, shear = wall_stiffness(scene, points.joint, closed=True)
     stiffness = rigid_stiffness(points, points.block, scene.blocks.centroid, mass, normal, shear)
@@ -46,18 +46,18 @@ def inertia_factors(scene: Scene, points: JointPoints, mass: Array) -> Array:
 
 
 def largest_scaling(mass: Array, of_blocks: Array) -> float:
-    """Largest factor by which modal masses ``(nd,)`` [kg] exceed those of the blocks, of what moves."""
+    """Largest factor by which modal masses ``(nd,)`` [kg] of moving modes exceed those of the blocks."""
     moving = np.isfinite(of_blocks)
     return float((mass[moving] / of_blocks[moving]).max(initial=1.0))
 
 
 def inertia_note(factor: float) -> str:
-    """What a message says of blocks that move with more inertia than they have."""
+    """Note in a message on blocks that move with scaled inertia; empty if there are none."""
     return f"inertia of blocks scaled up to {factor:.3g} times" if factor > 1.005 else ""
 
 
 def beam_note(scene: Scene) -> str:
-    """What there is to say of a beam that is too light to move as it is."""
+    """Note on a beam that moves with more inertia than its mass; empty if there is none."""
     if scene.beam is None:
         return ""
     beam = scene.beam.block

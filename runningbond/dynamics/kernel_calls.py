@@ -1,7 +1,8 @@
-"""The kernels of a step, called by their addresses.
+"""The kernels of a time step, called by address.
 
-What is called by name is compiled into its caller once more, and the loop over steps would take seconds to compile for
-each set of kernels that a model chooses. So it takes addresses as arguments, and knows the arrays' types alone.
+A function that is called by name is compiled into its caller again, so the loop over steps would take seconds to
+compile for each set of kernels that a model chooses. The loop therefore takes addresses as arguments, and depends only
+on the types of the arrays.
 """
 
 from typing import Any, TypeAlias
@@ -15,7 +16,7 @@ from numba.extending import intrinsic
 from .system import Interface, Kernel
 
 Addresses: TypeAlias = tuple[int, int, int, int, int]
-"""Of gather, reframe, law, scatter and the update, in one process and for as long as it lasts."""
+"""Addresses of gather, reframe, law, scatter and update; valid only in the present process."""
 
 VALUES, ROWS = float64[::1], float64[:, ::1]
 PARAMETERS = types.Tuple((uint64[::1], ROWS))
@@ -28,16 +29,16 @@ REFRAME = (None, FRAMES, ROWS)
 LAW = (VALUES, VALUES, PARAMETERS, ROWS, float64, VALUES, VALUES)
 SCATTER = (VALUES, VALUES, None, VALUES)
 UPDATE = (MODES, None, STATE, float64, float64)
-"""What each kernel takes; None is the model's own, geometry or memory."""
+"""Argument types of each kernel; None stands for a type of the model: its geometry, or the memory of its update."""
 
 _FOUND: dict[Any, Addresses] = {}
 
 
 def addresses(interface: Interface, advance: Kernel, memory: tuple[Any, ...]) -> Addresses:
-    """Addresses of an interface's kernels and of an update with some memory."""
+    """Addresses of an interface's kernels and of an update with its memory."""
     kernels = interface.gather, interface.reframe, interface.law.kernel, interface.scatter, advance
     geometry = tuple(interface.geometry)
-    # To tell Numba's types takes longer than some hundred steps, and contacts are found anew as often.
+    # Determining Numba types takes longer than some hundred steps, and contacts are searched for about as often.
     known_by = kernels, _kinds(geometry), _kinds(memory)
     if known_by not in _FOUND:
         _FOUND[known_by] = _compiled(kernels, typeof(geometry), typeof(memory))
@@ -45,7 +46,7 @@ def addresses(interface: Interface, advance: Kernel, memory: tuple[Any, ...]) ->
 
 
 def _compiled(kernels: tuple[Any, ...], geometry: Any, memory: Any) -> Addresses:
-    """Addresses of kernels, compiled for geometry and memory of some types."""
+    """Addresses of kernels, compiled for given types of geometry and memory."""
     own = geometry, geometry, None, geometry, memory
     found = []
     for kernel, arguments, its in zip(kernels, (GATHER, REFRAME, LAW, SCATTER, UPDATE), own, strict=True):
@@ -56,7 +57,7 @@ def _compiled(kernels: tuple[Any, ...], geometry: Any, memory: Any) -> Addresses
 
 
 def _kinds(value: Any) -> Any:
-    """What the type of a value goes by."""
+    """What the type of a value depends on: a key that is cheap to compute."""
     if isinstance(value, tuple):
         return type(value), *map(_kinds, value)
     if isinstance(value, np.ndarray):
@@ -65,9 +66,9 @@ def _kinds(value: Any) -> Any:
 
 
 def _call(arguments: tuple[Any, ...]) -> Any:
-    """Make what calls, in a kernel, another one at an address with such arguments, and brings on what it raises.
+    """Make a function that calls, from a kernel, another kernel at an address, and propagates its exceptions.
 
-    Arguments of other types than that was compiled for are converted or refused.
+    Arguments of other types than the kernel was compiled for are converted, or refused.
     """
 
     @intrinsic  # type: ignore[untyped-decorator]

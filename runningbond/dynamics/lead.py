@@ -1,4 +1,4 @@
-"""How walls are led: a beam along its path at a slow speed, supports to their settlement from rest to rest."""
+"""How prescribed displacements are applied: to a beam along its path at a slow speed, to supports from rest to rest."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,80 +17,80 @@ from .run import Observer, Run
 from .state import State
 
 ROWS, LEAST_ROWS = 200, 40
-"""Rows of the curve in the longest leg of a drive, and at least in each."""
+"""Rows of the curve in the longest leg of a drive, and the smallest number of rows in any leg."""
 
-SOFT = 10
-"""Rows in which a leg gathers its speed, and in which it slows down to turn."""
+RAMP = 10
+"""Rows in which a leg accelerates to its speed, and in which it slows down before it turns."""
 
-SEEN = 10
-"""Rows between two looks of an observer, and over which a mechanism is drawn."""
+STRIDE = 10
+"""Rows between two calls of an observer, and over which the motion of a mechanism is taken."""
 
 STAGES = 20
-"""Rests along the path of a settlement."""
+"""Number of rests in each leg of the path of a settlement."""
 
-WINDOW = 25
-"""Least steps between two changes of the speed of supports: each is a knock, and knocks shake friction loose."""
+SUPPORT_WINDOW_STEPS = 25
+"""Least time steps between two changes of the speed of supports: each change is a shock that loosens friction."""
 
 
 LOSS = 0.8
-"""Share of the largest force to which it falls where the wall has failed, and its mechanism is drawn."""
+"""Fraction of the largest force at which a wall has failed and its mechanism is drawn, once the force falls to it."""
 
-LAST = 0.1
-"""Part of a path over which a force that has formed a mechanism no longer changes."""
+FINAL_PART = 0.1
+"""Last part of a path, over which the force no longer changes if a mechanism has formed."""
 
-STILL = 1e-6
-"""Change of a share that counts as none, beside the tolerance's part of all its change."""
+UNCHANGED = 1e-6
+"""Change of the share on a support that counts as none, in addition to the tolerance times its total change."""
 
-SAME = 1e-9
-"""Part of a path by which rounding may set places apart that are one."""
+PATH_ROUNDING = 1e-9
+"""Difference of two displacements, relative to the path, that is only rounding."""
 
-ASIDE = 0.05
-"""Part of a path to one side that still counts as coming back to rest, if it is to the other side."""
+OVERSHOOT = 0.05
+"""Displacement to the other side, relative to the largest one, up to which a path only returns to its start."""
 
-COME_DOWN = 0.5
-"""Sizes of a block by which all of the dead load has come down, or what would do as much work, once a wall falls."""
+FALL_DESCENT = 0.5
+"""Descent of the whole dead load, in block sizes, whose work must at least be done before a wall counts as falling."""
 
-IN_MOTION = 0.5
-"""Part of that work, less what damping takes, which is in motion then."""
+FALL_KINETIC = 0.5
+"""Fraction of that work, less what local damping dissipates, that must be kinetic energy in a fall."""
 
-LAG = 5e-3
-"""Part of that work which one time step may do: velocities are half a step behind, and the ledger misses half of it."""
+STEP_WORK = 5e-3
+"""Largest fraction of that work in one time step: velocities lag by half a step, and the ledger misses half of it."""
 
 LITTLE = 0.01
-"""Share of the dead load below which a reaction need not be relatively accurate."""
+"""Fraction of the dead load below which a reaction need not be accurate relative to itself."""
 
 TOE = "broken toe [m]"
 BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]", TOE)
-"""What else is known of each row of a beam's path."""
+"""Further columns for each row of a beam's path."""
 
 
 class TraverseRow(NamedTuple):
-    """What was seen at one place of the path."""
+    """Observations at one place of the path."""
 
-    moved: float  # displacement [m], or part of a settlement
+    moved: float  # displacement [m], or fraction of the settlement
     force: float  # reaction [N], or share of the dead load
     carried: Array  # (np, 2) forces of joint points [N], or, at finite displacements, (n, 3) `Run.resultants`
     tie: Array  # (nt,) forces of the ties [N]
-    works: tuple[float, float]  # of the dead load and of what leads [J]
-    beam: tuple[float, ...]  # `BEAM` of one that is driven, else nothing
+    works: tuple[float, float]  # work of the dead load, and of the prescribed displacement or the live load [J]
+    beam: tuple[float, ...]  # `BEAM` if the beam is driven, otherwise empty
 
 
 @dataclass
 class Traverse:
-    """One traverse of the path from a state at rest: what was seen, and the answer."""
+    """One traverse of the path from a state at rest: its observations and its answer."""
 
-    best: State  # where the answer is
-    motion: Array  # (nd,) how the wall moved where it had come farthest
-    moves: bool  # whether forces are means of a motion, and not of rests
+    best: State  # state at which the answer is reached
+    motion: Array  # (nd,) motion of the wall at the farthest displacement, or where it fails
+    moves: bool  # whether forces are means during motion, not values at rest
     rows: list[TraverseRow] = field(default_factory=list)
     verdict: Verdict = "stable"
-    unseen: float = 0.0  # what the answer may be larger, for means over windows take from peaks
-    inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
-    crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # of joints' ends there [m], closed for good
-    gone: float = 0.0  # how far the blocks that go farthest have gone in each row of a push, in all [m]
-    elsewhere: tuple[Indices, Array, Array] | None = None  # where its displacements are, if the control point stays
-    lasting: float = 0.0  # largest mean force over a whole row of a motion
-    resolved: bool = True  # whether means over ever shorter parts of its path add next to nothing to the answer
+    unseen: float = 0.0  # by how much the answer may be larger: means over windows flatten peaks
+    inertia: float = 0.0  # by how much smaller, as bodies accelerate; in settlements both are due to loosened friction
+    crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # permanent closure at the joints' ends there [m]
+    gone: float = 0.0  # sum over the rows of a push of how far the farthest blocks moved [m]
+    elsewhere: tuple[Indices, Array, Array] | None = None  # where displacements are read if the control point stays
+    lasting: float = 0.0  # largest mean force over a whole row during motion
+    resolved: bool = True  # whether means over shorter and shorter windows add almost nothing to the answer
 
     @property
     def curve(self) -> Array:
@@ -99,11 +99,11 @@ class Traverse:
 
     @property
     def answer(self) -> float:
-        """The force at the end of a path from rest to rest, the largest one of a motion."""
+        """The force at the end of a path from rest to rest, or the largest force during a motion."""
         return float(self.curve[:, 1].max() if self.moves else self.curve[-1, 1])
 
     def calm(self) -> None:
-        """Take the middle one of three forces for each row of a motion but the first and the last, in place."""
+        """Replace the force of each row of a motion, except the first and last, by the median of three, in place."""
         force = np.array([row.force for row in self.rows])
         for k in range(1, len(force) - 1) if self.moves else ():
             self.rows[k] = self.rows[k]._replace(force=float(np.median(force[k - 1 : k + 2])))
@@ -111,45 +111,45 @@ class Traverse:
 
 @dataclass(frozen=True, eq=False)
 class Lead:
-    """How a wall is led, from its rest under the dead load."""
+    """How prescribed displacements are applied, from the rest under the dead load on."""
 
     scene: Scene
     run: Run
     start: State
     criteria: Criteria
     observe: Observer
-    points: JointPoints  # of the joints, in the order of `Run.at_joints`
-    most: float = np.inf  # force beyond which the wall is led no more
+    points: JointPoints  # joint points, in the order of `Run.at_joints`
+    most: float = np.inf  # force at which the wall is not pushed farther
 
     @property
     def answer(self) -> str:
-        """What the answer of a traverse is."""
+        """Name of the answer of a traverse."""
         share, reaction = "share of the dead load on the support", "largest reaction of the drive along its path"
         return share if self.settles else reaction
 
     @property
     def read_at(self) -> str:
-        """What is to be said of where displacements are read."""
+        """Note on where displacements are read; may be empty."""
         return ""
 
     @property
     def settles(self) -> bool:
-        """Whether supports are led, not the beam."""
+        """Whether supports settle; otherwise the beam is driven."""
         return self.scene.settlement is not None
 
     @property
     def least(self) -> float:
-        """Answer below which brackets need not be relatively narrow: a share of the dead load, or none of a force."""
+        """Answer below which brackets need not be relatively narrow: a share of the dead load, or zero for a force."""
         return LITTLE if self.settles else 0.0
 
     @property
     def least_work(self) -> float:
-        """Work [J] beside which the energy ledger has to add up, where the loads do less."""
+        """Least work [J] relative to which the residual of the energy ledger is judged."""
         return LITTLE * self.run.system.carried.work
 
     @property
     def goals(self) -> Array:
-        """Displacements along the first move [m], or parts of the settlement, one after the other."""
+        """Displacements along the first move [m], or fractions of the settlement, one after the other."""
         drive = self.scene.drive
         if self.scene.settlement is not None:
             return np.array(self.scene.settlement.path)
@@ -157,22 +157,22 @@ class Lead:
 
     @property
     def beam(self) -> int:
-        """The block that is the beam."""
+        """Number of the block that is the beam."""
         if self.scene.beam is None or self.scene.beam.block is None:
             raise TypeError("only a beam is driven")
         return self.scene.beam.block
 
     @property
     def longest(self) -> float:
-        """Longest leg."""
+        """Length of the longest leg."""
         return float(np.abs(np.diff(self.goals, prepend=0.0)).max())
 
     def share(self, state: State, speed: float, steps: int, given: float) -> float:
-        """Move supports, in place; the share of the dead load that they bear meanwhile."""
+        """Move supports, in place; return the mean share of the dead load that they carry."""
         return self.run.carry(state, speed, steps, given=given) / self.run.system.carried.work
 
     def note(self, traverse: Traverse, state: State, moved: float, force: float) -> None:
-        """Add a row of a state to a traverse."""
+        """Append a row for a state to a traverse."""
         run, beam = self.run, tuple[float, ...]()
         small = run.system.contacts is None
         carried = np.column_stack(run.forces(state)) if small else run.resultants(state, force)
@@ -184,9 +184,9 @@ class Lead:
         traverse.rows.append(TraverseRow(moved, force, carried, tie, (dead, state.external - dead), beam))
 
     def broken_toe(self, state: State, moved: float) -> float:
-        """How far a toe has been crushed, or blocks have split there [m], whichever is more.
+        """Depth to which a toe has been crushed, or opening of cracks within blocks there [m], whichever is larger.
 
-        The toe is the lower half of the outer quarter of the wall, on the side that it is pushed to.
+        The toe is the lower half of the outer quarter of the wall, on the side towards which the wall is pushed.
         """
         opening, *_, damage, crushed = self.run.at_joints(state)
         split = np.where(self._is_inner & (damage >= 1), np.maximum(opening, 0.0), 0.0)
@@ -197,65 +197,65 @@ class Lead:
     @cached_property
     def _is_inner(self) -> Mask:
         inner, joint = self.scene.joints.inner, self.points.joint
-        return np.append(inner, True)[np.minimum(joint, len(inner))]  # joints beyond the scene's are between triangles
+        return np.append(inner, True)[np.minimum(joint, len(inner))]  # higher numbers are joints between triangles
 
     @cached_property
     def _toes(self) -> tuple[Mask, Mask]:
         """The points of the left and of the right toe."""
         (left, bottom), (right, top) = self.scene.blocks.extent(self.scene.masonry)
         x, y = self.points.position.T
-        # Joints at half the height, and points at the quarters, are of a toe, whatever the last bit of a sum of sizes.
+        # Joints at half the height and points at the quarters belong to the toe in spite of rounding in a sum of sizes.
         reach = self.scene.blocks.tolerance
         low, width = y <= (bottom + top) / 2 + reach, (right - left) / 4 + reach
         return low & (x <= left + width), low & (x >= right - width)
 
     def go(self, traverse: Traverse, speed: float) -> State:
-        """Go through the path, at a largest speed [m/s, or settlements/s], to the state at its end."""
+        """Traverse the path at a largest speed [m/s, or settlements/s]; return the state at its end."""
         state = self.start.copy()
         (self._settle if self.settles else self._drive)(traverse, state, speed)
         return state
 
     def after(self, traverse: Traverse) -> "Lead":
-        """How it is led the next time, after a traverse."""
+        """The parameters of the next traverse, after this one."""
         return self
 
     def kept(self, traverses: list[Traverse]) -> Traverse:
-        """What is kept of traverses of which the last was interrupted."""
+        """The traverse to keep if the last one was interrupted."""
         return traverses[-1]
 
     def apart(self, fast: Traverse, slow: Traverse) -> float:
-        """How far curves of two speeds are apart, relative to the answer, where they are told beside it."""
+        """Distance of the curves at two speeds, relative to the answer, if it is reported; otherwise 0."""
         return 0.0
 
     def failing(self, curve: Array) -> int:
-        """The row of a curve ``(n, 2)`` in which the wall is seen to fail."""
+        """Row of a curve ``(n, 2)`` in which the wall fails."""
         return failing(curve)
 
     def onward(self, curve: Array) -> Array:
-        """A curve ``(n, 2)`` with its displacement counted towards where walls are to fail."""
+        """A curve ``(n, 2)`` with displacements positive towards the side on which walls are to fail."""
         return curve
 
     def before(self, curve: Array) -> str:
-        """What is to be said of a curve ``(n, 2)`` on its way to the answer."""
+        """Note on the part of a curve ``(n, 2)`` before the answer; may be empty."""
         return ""
 
     def remedy(self, curve: Array) -> str:
-        """What to do where speeds differ on the answer of a curve ``(n, 2)``."""
+        """Advice if the answers of a curve ``(n, 2)`` at two speeds differ; may be empty."""
         return ""
 
     def fall(self, curve: Array) -> str:
-        """How a wall has fallen at the end of its curve ``(n, 2)``."""
+        """Note on how a wall has fallen at the end of its curve ``(n, 2)``."""
         if self.settles:
             return f"the wall falls beyond {abs(curve[-1, 0]):.4g} m, this is of its last rest"
         return f"the wall falls beyond {np.abs(curve[:, 0]).max():.4g} m"
 
     def crushed(self, state: State) -> Array:
-        """How far joints have closed for good at their ends [m], ``(nj, 2)``; empty where none crushes."""
+        """Permanent closure of joints at their ends [m], ``(nj, 2)``; empty if no joint can crush."""
         return np.asarray(self.run.at_joints(state)[5, self._ends]) if self._has_caps else np.zeros((0, 2))
 
     @cached_property
     def _has_caps(self) -> bool:
-        """Whether a joint of the scene crushes."""
+        """Whether any joint of the scene can crush."""
         return bool(np.isfinite(wall_caps(self.scene, self.points.joint[self._ends].ravel())[0]).any())
 
     @cached_property
@@ -271,7 +271,7 @@ class Lead:
     def _drive(self, traverse: Traverse, state: State, speed: float) -> None:
         run, at = self.run, 0.0
         self.observe(run, state, 0.0)
-        # At finite displacements blocks knock at one another all along, which means over rows leave out.
+        # At finite displacements blocks collide all the time, which means over rows average out.
         knock = run.system.contacts is not None
         self.note(traverse, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
@@ -290,14 +290,14 @@ class Lead:
                     before, gathered = run.driven_speed(state), self._gathered(state)
                     force = run.drive(state, top * part, length, given=given)
                     force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
-                    inertia = 0.0 if knock and k >= SOFT else (self._gathered(state) - gathered) / (length * run.dt)
+                    inertia = 0.0 if knock and k >= RAMP else (self._gathered(state) - gathered) / (length * run.dt)
                     peaks.see(force, inertia, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                     if window == peaks.windows // 2:
                         middle = state.copy()
-                # What a row's forces are the mean of is there in its middle.
+                # The mean force of a row belongs to the middle of the row.
                 self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
                 seen.append((middle.motion, self.crushed(middle)))
-                if (k + 1) % SEEN == 0:
+                if (k + 1) % STRIDE == 0:
                     self.observe(run, state, traverse.rows[-1].force)
                 if self.falls(state):
                     traverse.verdict = "collapse"
@@ -317,37 +317,37 @@ class Lead:
             traverse.rows.insert(peak.row, traverse.rows.pop())
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
         row = self.failing(traverse.curve)
-        traverse.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
-        # The most so far: joints that have parted since have been crushed too.
+        traverse.motion = seen[row][0] - seen[max(0, row - STRIDE)][0]
+        # The maximum so far: joints that have opened since have also been crushed.
         traverse.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)
 
     def falls(self, state: State) -> bool:
-        """Whether the dead load has come down far, and most of its work is in motion: what is led does little of any.
+        """Whether the dead load has come down far and most of its work is kinetic; prescribed motions do little work.
 
-        A beam that nothing bears any more would be followed through the wall and the ground.
+        Without this a beam that nothing carries any more would be followed through the wall and the ground.
         """
         run, system = self.run, self.run.system
         given = run.dead_work(state) - run.dead_work(self.start)
-        if given <= max(COME_DOWN * self.work_of_a_block, run.dt * float(system.dead @ state.velocity) / LAG):
+        if given <= max(FALL_DESCENT * self.work_of_a_block, run.dt * float(system.dead @ state.velocity) / STEP_WORK):
             return False
-        return system.kinetic_energy(state.velocity) > IN_MOTION * (1 - run.local) * given
+        return system.kinetic_energy(state.velocity) > FALL_KINETIC * (1 - run.local) * given
 
     @cached_property
     def work_of_a_block(self) -> float:
-        """Work of the dead load [J] where all that moves comes down by the size of a block."""
+        """Work of the dead load [J] if everything that moves comes down by the size of a block."""
         system = self.run.system
         load = np.where(np.isfinite(system.mass), system.dead, 0.0)[system.rigid[:, :2]]
         return float(np.hypot(*load.T).sum() * self.scene.block_size)
 
     def _gathered(self, state: State) -> float:
-        """Momentum along the drive of all bodies but the one driven, and what damping takes as they gather it [N s]."""
+        """Momentum along the drive of all bodies except the beam, including what damping dissipates meanwhile [N s]."""
         system = self.run.system
         along = system.rigid[system.owner != self.beam, 0]
         along = along[np.isfinite(system.mass[along])]
         return float(system.mass[along] @ state.velocity[along]) / (1 - self.run.local)
 
     def moved(self, state: State) -> float:
-        """How far what is driven has gone since the rest under the dead load [m]."""
+        """Displacement of the driven point since the rest under the dead load [m]."""
         return self.run.driven(state) - self.run.driven(self.start)
 
     def _settle(self, traverse: Traverse, state: State, speed: float) -> None:
@@ -355,12 +355,12 @@ class Lead:
         motion, far, _ = run.system.carried
         self.note(traverse, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
         self.observe(run, state, traverse.rows[-1].force)
-        rows = 2 * SOFT
+        rows = 2 * RAMP
         stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
         windows = windows_of_stage(stage)
         pace = _pace(rows, windows).ravel()
         steps = max(1, round(stage / len(pace)))
-        # Small at first on each leg, where reactions change most.
+        # Small steps at the start of each leg, where reactions change most.
         shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
         stages = [0.0, *(at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:])]
         for number, (before, settled) in enumerate(pairwise(stages), start=2):
@@ -370,13 +370,13 @@ class Lead:
             rest = self.criteria.rest if number == len(stages) else NEARLY_AT_REST
             traverse.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
             fell = traverse.verdict != "stable"
-            # Of a fall through finite displacements the last rest is shown, for blocks may have turned by any angle.
+            # For a fall at finite displacements the last rest is shown, because blocks may have turned by any angle.
             if not fell or run.system.contacts is None:
                 traverse.motion, traverse.crushed = state.motion - self.start.motion, self.crushed(state)
             if fell:
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
-            # In the end supports hardly move. What changes as they stop is friction that motion has shaken loose.
+            # Close to the end supports barely move. What changes as they stop is friction that the motion has loosened.
             traverse.unseen = traverse.inertia = abs(bears - float(np.mean(moving[-max(1, windows // 4) :])))
             self.note(traverse, state, far * settled, bears)
             traverse.best = state.copy()
@@ -384,69 +384,69 @@ class Lead:
 
 
 def windows_of_stage(steps: float) -> int:
-    """Windows of one speed in each row of a stage of so many steps, whole but for rounding."""
-    # Four windows stay four where a time step's last bit makes 1999.999 steps of 2000.
-    return max(1, round(steps) // (2 * SOFT * WINDOW))
+    """Number of windows of constant speed in each row of a stage of `steps` steps, a whole number up to rounding."""
+    # Rounded first: the last bit of a time step may make 1999.999 steps of 2000, and still there are four windows.
+    return max(1, round(steps) // (2 * RAMP * SUPPORT_WINDOW_STEPS))
 
 
 def goes_both_ways(goals: Array) -> bool:
-    """Whether a path from zero to some goals ``(n,)``, one after the other, goes to both sides.
+    """Whether a path from zero through goals ``(n,)``, one after the other, goes to both sides.
 
-    It does not where it comes back to where it began, if a little beyond.
+    A path that returns to its start, possibly a little beyond it, does not.
     """
     most = float(np.abs(goals).max(initial=0.0))
-    return bool(goals.max(initial=0.0) > ASIDE * most and goals.min(initial=0.0) < -ASIDE * most)
+    return bool(goals.max(initial=0.0) > OVERSHOOT * most and goals.min(initial=0.0) < -OVERSHOOT * most)
 
 
 def last_leg(curve: Array) -> Array:
-    """The rows of a path's curve ``(n, 2)`` since it last turned round, its displacement counted from there."""
+    """The rows of a path's curve ``(n, 2)`` since it last reversed, with displacements from there."""
     senses = np.sign(np.diff(curve[:, 0]))
     start = int(np.flatnonzero(senses != senses[-1])[-1]) + 1 if (senses != senses[-1:]).any() else 0
     return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
 
 
 def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0, still: float = 0.0) -> bool:
-    """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of a path.
+    """Whether a mechanism has formed: the force no longer grows, or the share no longer changes, at the end of a path.
 
     Parameters
     ----------
     curve : (n, 2) float
         Displacement and force, or share of the dead load.
     tolerance
-        Part of the force by which it may still grow; of all its change, by which a share may still change.
+        Fraction of the force by which it may still grow; and of its total change by which a share may still change.
     settles
-        Whether supports are led. An elastic wall sheds load too: of a short path hardly any, and the same all along.
+        Whether supports settle. An elastic wall sheds load too: hardly any on a short path, and evenly along it.
     least
         Force below which growth need not be small.
     still
-        Change of a share that motion may have made, which counts as none: one that was there from the start may be all.
+        Change of a share that motion may have caused, which counts as none: it may be all the change there was.
     """
     value, force = (last_leg(curve) if settles else curve).T
-    late = value >= (1 - LAST) * value.max()
+    late = value >= (1 - FINAL_PART) * value.max()
     if settles:
-        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + max(still, STILL))
+        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + max(still, UNCHANGED))
     most = float(force[late].max())
     return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, least)
 
 
 def shedding(curve: Array) -> tuple[bool, str]:
-    """Whether the share on a support falls where a path ends, and what that is called: it may be negative.
+    """Whether the share on a support falls at the end of a path, and the name of the change: the share may be negative.
 
-    Where it changes no more over the last part, by the whole leg.
+    If the share no longer changes over the last part, the whole leg counts.
     """
     value, share = last_leg(curve).T
-    late = share[value >= (1 - LAST) * value.max()]
-    first, last = late[0] if abs(late[-1] - late[0]) > STILL else share[0], share[-1]
+    late = share[value >= (1 - FINAL_PART) * value.max()]
+    first, last = late[0] if abs(late[-1] - late[0]) > UNCHANGED else share[0], share[-1]
     return bool(last <= first), "sheds load" if abs(last) <= abs(first) else "takes up load"
 
 
 def failing(curve: Array) -> int:
-    """The row of a curve of a drive ``(n, 2)`` in which a wall is seen to fail.
+    """Row of a drive's curve ``(n, 2)`` in which a wall fails.
 
-    Where the force has first fallen to `LOSS` of its largest on the way farther; else the farthest one.
+    The first row beyond earlier displacements at which the force is at most `LOSS` of its peak; else the farthest row.
     """
     moved, force = curve.T
-    same = SAME * np.abs(moved).max()  # an amplitude that comes again is no farther than before, but for rounding
+    same = PATH_ROUNDING * np.abs(moved).max()  # a repeated amplitude is not farther than before, except by rounding
     onward = np.append(True, moved[1:] > np.maximum.accumulate(moved)[:-1] + same)
     top = int(force.argmax())
     fallen = top + np.flatnonzero(onward[top:] & (force[top:] <= LOSS * force[top]))
@@ -454,6 +454,6 @@ def failing(curve: Array) -> int:
 
 
 def _pace(rows: int, windows: int = 1) -> Array:
-    """Part of the top speed in each window of each row ``(rows, windows)`` of a leg, which starts and ends softly."""
+    """Fraction of the top speed in each window of each row ``(rows, windows)`` of a leg, with a soft start and end."""
     k = (np.arange(rows * windows) + 0.5) / windows
-    return np.asarray(np.minimum(1.0, np.minimum(k, rows - k) / SOFT)).reshape(rows, windows)
+    return np.asarray(np.minimum(1.0, np.minimum(k, rows - k) / RAMP)).reshape(rows, windows)

@@ -1,10 +1,10 @@
-"""Walls that are led: a beam along a path at a slow speed, supports from rest to rest, or all blocks by the live load.
+"""Walls under prescribed displacements: of a beam on a path, of supports from rest to rest, or pushed by the live load.
 
-The whole path is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
-along its first move, the share of the dead load that supports bear at the settlement asked for, or the largest
-multiplier of a live load that pushes. It is one of a collapse if a mechanism has formed: if over the last tenth of the
-path it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still
-sheds or takes up load, where the path ends. A wall at rest on a support that bears nothing any more bridges it.
+The whole path is traversed again at half the speed until its answer converges: the largest reaction of a beam's drive
+along its first move, the share of the dead load that supports carry at the required settlement, or the largest
+multiplier of a pushing live load. The answer counts as a collapse if a mechanism has formed: if it has changed by less
+than the tolerance over the last tenth of the path, or the wall falls. Otherwise the wall still hardens, or the support
+still sheds or takes up load, at the end of the path. A wall at rest whose support carries nothing any more bridges it.
 """
 
 from collections.abc import Callable
@@ -25,17 +25,17 @@ from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, she
 from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
-LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
-"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
-at small displacements, and at finite ones, whose paths are longer.
+LEAST_STEPS, REST_MULTIPLE, REST_MULTIPLE_FINITE = 20_000, 20, 2
+"""Fewest time steps of the longest leg in the first traverse if no rate is given, and the fewest in multiples of those
+to rest under the dead load: at small displacements, and at finite ones, whose paths are longer.
 """
 
 LOCKED = 20.0
-"""Live load, in largest dead ones (without weight, in strengths of the strongest joint), up to which a wall is pushed
-that joint forces hold at any."""
+"""Live load, in dead loads (weightless: in strengths of the strongest joint), up to which a self-locking wall is
+pushed."""
 
 UNACCOUNTED = 0.01
-"""Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
+"""Fraction of the work of the loads that the energy ledger may miss before a run counts as failed."""
 
 
 def collapse_of_led(
@@ -51,15 +51,16 @@ def collapse_of_led(
     observe: Observer,
     distance: float | None = None,
 ) -> Outcome:
-    """Lead a wall through the displacements of its scene; an outcome so far, and the rest as of `collapse_by_steps`.
+    """Apply the displacements of a scene to a wall; arguments not described here are as in `collapse_by_steps`.
 
-    One whose live load pushes it is led by a `distance` [m], where none is given by its smaller side.
+    `outcome` is the outcome so far. A wall pushed by its live load moves by `distance` [m], by default its smaller
+    side.
 
     Returns
     -------
     Outcome
-        `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower`
-        and `upper` lie about the answer as far as the last halving of the speed has changed it.
+        `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower` and
+        `upper` enclose the answer by as much as the last halving of the speed has changed it.
     """
     traverses, self_locking = list[Traverse](), cache(is_self_locking)
     try:
@@ -94,8 +95,8 @@ def collapse_of_led(
         return replace(outcome, message="interrupted: the path so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    # What a support hardly moves does hardly any work. The dead load came on at once, in a motion of no account.
-    # Where the path comes back, works nearly cancel: what counts is how far they went.
+    # A support that barely moves does almost no work. The motion under the suddenly applied dead load does not count.
+    # If the path returns, works nearly cancel: their ranges are what counts.
     gone = float(np.ptp([row.works for row in traverse.rows], axis=0).sum()) if traverse.rows else 0.0
     lost = run.unaccounted(last, max(gone, lead.least_work), since=state)
     outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, point_order)
@@ -110,12 +111,12 @@ def collapse_of_led(
 
 
 def _push(lead: Lead, distance: float | None, most: float) -> Push:
-    """How a wall is pushed by its live load: a distance [m], and while the load is no more than so many dead ones."""
+    """The push of a wall by its live load: over a distance [m], and up to `most` as a multiple of the dead load."""
     scene, system = lead.scene, lead.run.system
     low, high = scene.blocks.extent(scene.wall)
     load = system.measure(system.live) or 1.0
     given, side = (scene, lead.run, lead.start, lead.criteria, lead.observe, lead.points), float((high - low).min())
-    # Few walls go farther than their smaller side before they fall: those that do are pushed farther the next time.
+    # Few walls move farther than their smaller side before they fall; those that do are pushed farther the next time.
     return Push(*given, most / load, distance or side, min(distance or side, side))
 
 
@@ -124,25 +125,25 @@ def _rate(scene: Scene) -> float | None:
 
 
 def _durations(lead: Lead, rest: int) -> list[float]:
-    """Times of the longest leg [s] one after the other: by twice the rate and the rate, or ever longer ones.
+    """Durations of the longest leg [s], one per traverse: for twice the rate and the rate, or doubling each time.
 
-    These are as long as the budget allows.
+    The doublings end at the budget.
     """
     if rate := _rate(lead.scene):
         return [lead.longest / (2 * rate), lead.longest / rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    unhurried = UNHURRIED if lead.run.system.contacts is None else UNHURRIED_FAR
+    unhurried = REST_MULTIPLE if lead.run.system.contacts is None else REST_MULTIPLE_FINITE
     steps = max(LEAST_STEPS, unhurried * rest)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [steps * lead.run.dt * 2**k for k in range(runs)]
 
 
 def _bracket(traverses: list[Traverse]) -> tuple[float, float]:
-    """The answer as far on either side of the last one as that lies from the one at twice its speed.
+    """Bracket of the answer: the last answer, minus and plus its change from the answer at twice the speed.
 
-    What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length. A
-    force that sets the wall in motion is no less, in the end, than without what does. One that shakes is the larger the
-    shorter the windows: where those do not settle what the peak is, the lower end is that of means over whole rows.
+    The effect of the speed falls at least as fast as the speed, and what a mean over a window misses of a peak as fast
+    as the window length. Inertia of accelerating bodies can only raise the force. An oscillating force has larger means
+    over shorter windows: if these do not converge on the peak, the lower end is from means over whole rows.
     """
     fast, slow = traverses[-2:]
     change = abs(fast.answer - slow.answer)
@@ -161,13 +162,13 @@ def _spread(lead: Lead, traverses: list[Traverse]) -> float:
 
 
 def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
-    """Whether half the speed would hardly change the answer, nor what else is told, of complete traverses."""
+    """Whether half the speed would change the answer, and what else is reported, by less than the tolerance."""
     ended = all(traverse.verdict != "undecided" for traverse in traverses[-2:])
     return ended and _spread(lead, traverses) <= tolerance and lead.apart(*traverses[-2:]) <= tolerance
 
 
 def _arrays(outcome: Outcome, lead: Lead, traverse: Traverse, point_order: Indices) -> Outcome:
-    """Forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
+    """Forces at the answer, and motion: the whole shape for a settlement, the mechanism for a drive."""
     run = lead.run
     force, motion = run.at_joints(traverse.best)[2:4].T[point_order], run.system.motion_of_blocks(traverse.motion)
     if motion.any():
@@ -176,7 +177,7 @@ def _arrays(outcome: Outcome, lead: Lead, traverse: Traverse, point_order: Indic
 
 
 def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, traverse: Traverse) -> Outcome:
-    """Curve, reactions and works of a traverse; its states rest, or are of a motion, whose inertia is left out."""
+    """Curve, reactions and works of a traverse, from states at rest, or in motion with their inertia left out."""
     supports = Supports(scene, points, run.system.owner)
     _, force, carried, tie, works, beam = map(np.array, zip(*traverse.rows, strict=True))
     columns = (*supports.columns, *WORKS, AT_REST)
@@ -194,7 +195,7 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, travers
 
 
 def _has_come_free(lead: Lead, row: TraverseRow) -> bool:
-    """Whether the supports that move bear nothing at a place of a path."""
+    """Whether the moving supports carry nothing at a place of a path."""
     if lead.run.system.contacts is None:
         return Supports(lead.scene, lead.points, lead.run.system.owner).have_come_free(row.carried, row.tie)
     borne = np.hypot(*row.carried[:, :2].T)
@@ -202,7 +203,7 @@ def _has_come_free(lead: Lead, row: TraverseRow) -> bool:
 
 
 def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: float) -> Outcome:
-    """Verdict on some traverses, of which the last one is drawn."""
+    """Verdict on several traverses, of which the last is drawn."""
     traverse = traverses[-1]
     what = lead.answer
     what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"

@@ -8,65 +8,65 @@ from runningbond.scene import Array
 
 from .collapse import CALM, CollapseDetector, Criteria, Verdict, hold_load, settle
 from .dead_load import put_on_dead_load
-from .growth import FAR, Growth
+from .growth import FAST_FRACTION, Growth
 from .run import Observer, Run, no_observer
 from .state import State
 
 LOADING, LOADING_WEIGHTLESS = 24, 4
-"""Times in which the load grows by its first step, in times that the wall takes to rest under that step put on at once.
+"""Time in which the load grows by its first step, in times that the wall takes to rest under this step applied at once.
 
-A wall that is loaded faster slips in several places at once where it would slip in one after the other, and so comes
-to bear more, or less.
+A wall that is loaded faster slips in several places at once where it would slip in one after the other, and therefore
+carries more, or less.
 """
 
 RESOLVED = 10
-"""Least width of a bracket, in live loads that a wall would be held to bear though nothing balances them."""
+"""Smallest width of a bracket, in live loads that would pass as at rest even if nothing balanced them."""
 
 GROWTH = 1 / 8
-"""Largest step, once the first ones are borne, as a fraction of the load."""
+"""Largest step after the first ones, as a fraction of the load."""
 
 MOST_UNDECIDED = 4
-"""Undecided loads, side by side, after which a search that has seen a fall ends; half as many end one that has seen
-none. Each has cost the whole budget."""
+"""Number of adjacent undecided loads that ends a search if any load led to collapse; half as many end it otherwise.
+Each has cost the whole budget."""
 
 UNDECIDED_BUDGETS = 3
-"""Budgets that may be spent on undecided loads, wherever they are, before a search ends."""
+"""Number of budgets that may be spent on undecided loads anywhere before a search ends."""
 
 DOUBLED_BEYOND = 200
-"""Load, in first steps, beyond which it is doubled in each: at ten weights a wall that stands probably locks."""
+"""Load, in first steps, above which each step doubles it: a wall that stands at ten weights is probably locked."""
 
 
 @dataclass(eq=False)
 class LoadSteps:
     """Result of a search by steps of constant load."""
 
-    # largest multiplier that the wall bore at rest, smallest that brought it down; None where none did
+    # largest multiplier at which the wall came to rest, smallest at which it fell; None if there is none
     lower: float | None = None
     upper: float | None = None
-    # of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
-    # where it ended beyond the largest load or displacement
+    # verdict on the last load tried, or ``undecided`` if undecided loads ended the search; ``stable`` without `upper`
+    # if the search ended beyond the largest load or displacement
     verdict: Verdict = "undecided"
-    borne: State | None = None  # state at rest under `lower`; None if not even the dead load was borne
+    borne: State | None = None  # state at rest under `lower`; None if the wall did not even carry its dead load
     fallen: State | None = None  # state in the collapse under `upper`, or under the dead load
     tried_from: float | None = None  # multiplier at rest from which the load last grew to `upper`
-    # (nd,) where the wall was on its way to that collapse, the latest first: half the way before, then each rest
+    # (nd,) motions on the way to that collapse, the latest first: half-way to it, then each rest
     fall_starts: list[Array] = field(default_factory=list)
-    # every state at rest and its multiplier, in order of load
+    # every state at rest and its multiplier, in the order of loads
     rests: list[tuple[float, State]] = field(default_factory=list)
     steps: int = 0  # steps taken, on every path
     interrupted: bool = False  # whether Ctrl-C ended it
-    far: bool = False  # whether it ended as a body, at rest, had come beyond the largest displacement
+    far: bool = False  # whether it ended because a body, at rest, had moved beyond the largest displacement
 
     @property
     def width(self) -> float:
-        """Width of the bracket, infinite until a load brings the wall down."""
+        """Width of the bracket, infinite until a load makes the wall fall."""
         return np.inf if self.upper is None else self.upper - (self.lower or 0.0)
 
     def add(self, trial: float, state: State, verdict: Verdict, halfway: Array | None) -> None:
-        """Take note of a load and of the wall under it."""
+        """Record a load and the state of the wall under it."""
         self.verdict = verdict
         if self.verdict == "stable":
-            if self.upper is not None and trial >= self.upper:  # on a way with more rests than that of the fall
+            if self.upper is not None and trial >= self.upper:  # on a path with more rests than that of the collapse
                 self.upper, self.fallen = None, None
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
@@ -75,7 +75,7 @@ class LoadSteps:
             rests = [rest.motion for _, rest in reversed(self.rests)]
             self.fall_starts = rests if halfway is None else [halfway, *rests]
         if trial == self.upper:
-            self.verdict, self.tried_from = "collapse", self.lower  # it has fallen there, if without an answer now
+            self.verdict, self.tried_from = "collapse", self.lower  # it fell there before, even if undecided now
 
 
 @dataclass(frozen=True)
@@ -89,12 +89,12 @@ class UndecidedLoads:
         return min(self.loads) - (result.lower or 0.0), (result.upper or np.inf) - max(self.loads)
 
     def closed(self, result: LoadSteps, width: float) -> bool:
-        """Whether loads around these would make a bracket of some width no narrower."""
+        """Whether the bracket cannot become narrower than `width`, because of the undecided loads."""
         most = MOST_UNDECIDED // 2 if result.upper is None else MOST_UNDECIDED
         return bool(self.loads) and (len(self.loads) >= most or max(self.sides(result)) <= width / 4)
 
     def after(self, result: LoadSteps, trial: float) -> "UndecidedLoads":
-        """These loads and one more if it is undecided; none where the wall held above them or fell below them."""
+        """These loads, and `trial` if it is undecided; none if the wall held above them or fell below them."""
         undecided = UndecidedLoads((*self.loads, trial) if result.verdict == "undecided" else self.loads)
         return undecided if undecided.loads and min(undecided.sides(result)) > 0 else UndecidedLoads()
 
@@ -111,31 +111,31 @@ def load_steps(
     bound: float | None = None,
     observe: Observer = no_observer,
 ) -> LoadSteps:
-    """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
+    """Raise the load step by step, each to rest, and bisect the step in which the wall falls.
 
-    Every trial starts from the last state at rest, or from the wall as it was when the load grew through that trial
-    slowly, so that a fall leaves no trace in the states that count.
-    Steps grow while they are borne, so that the first one need not know the answer's size. An undecided load is passed
-    by, just beside it; once a fall is known the bracket closes in on such loads from both sides. A wall without weight,
-    and one that came far at rest in the last step, is in the end brought to the load under which it fell from the
-    largest that it bore, and goes on if it bears it.
+    Every trial starts from the last state at rest, or from the state in which the load passed that trial in slow
+    growth: a fall leaves no trace in the states that count. Steps grow while the wall carries them, so the first one
+    need not fit the answer. The search passes an undecided load, just beside it; once a collapse is known, the bracket
+    closes in on such loads from both sides. A wall without weight, or one that moved far at rest in the last step, is
+    finally loaded from the largest load that it carried to the one under which it fell; the search goes on if it
+    carries that.
 
     Parameters
     ----------
     first
-        First step of the multiplier. It is doubled as long as the wall bears it, put on at once, with nothing lost.
+        First step of the multiplier. It is doubled as long as the wall carries it, applied at once, without any loss.
     tolerance
-        Relative width of the bracket at which to stop; it stops as well where the criterion of rest sees no more.
+        Relative width of the bracket at which to stop; the search also stops at the resolution of the rest criterion.
     most
         Multiplier beyond which the search ends.
     farthest : float or (n,) float
-        Displacement [m] of any body, or of each, since the dead load was borne, beyond which it ends.
+        Displacement [m] of any body, or of each, since the rest under the dead load, beyond which the search ends.
     loading
-        Time in which the load grows by its first step, or by an eighth where that is more, in times that the wall
-        takes to rest under the first step put on at once; `LOADING` or `LOADING_WEIGHTLESS` where none is given.
+        Time in which the load grows by its first step, or by an eighth of the load if that is more, in times that the
+        wall takes to rest under the first step applied at once; by default `LOADING` or `LOADING_WEIGHTLESS`.
     bound
-        Multiplier that is proved too large, where one is: far below it the load grows faster (elsewhere where the wall
-        does not give way, `Growth`), and none that is much larger is tried unless the wall bears it.
+        Multiplier that is proved too large, if there is one: far below it the load grows faster (elsewhere only until
+        the wall yields, `Growth`), and no load much larger is tried unless the wall carries it.
 
     Returns
     -------
@@ -154,7 +154,7 @@ def load_steps(
 
 @dataclass(eq=False)
 class _Search:
-    """A search as it goes on; parameters are those of `load_steps`."""
+    """A search in progress; parameters are those of `load_steps`."""
 
     run: Run
     first: float
@@ -169,7 +169,7 @@ class _Search:
     undecided: UndecidedLoads = UndecidedLoads()
 
     def go(self) -> None:
-        """Fill in the result."""
+        """Run the search and fill in the result."""
         result, system = self.result, self.run.system
         loaded = put_on_dead_load(self.run, self.criteria, self.observe)
         state, result.verdict, result.steps = loaded.state, loaded.verdict, loaded.steps
@@ -178,7 +178,7 @@ class _Search:
             return
         result.add(0.0, state, "stable", None)
         self.run = self.run.held_late(state)
-        grows, in_vain = self._load_at_once(), 0
+        grows, undecided_steps = self._load_at_once(), 0
         step = max(self.first, GROWTH * result.rests[-1][0])
         while (trial := self._next_trial(step)) is not None and trial <= self.most:
             growth = 1.0 if trial > DOUBLED_BEYOND * self.first and not system.weightless else GROWTH
@@ -189,8 +189,8 @@ class _Search:
             taken = grows.steps - before + state.steps - held
             result.steps += taken
             result.add(trial, state, verdict, halfway)
-            in_vain += taken if verdict == "undecided" else 0
-            if in_vain > UNDECIDED_BUDGETS * self.criteria.budget:
+            undecided_steps += taken if verdict == "undecided" else 0
+            if undecided_steps > UNDECIDED_BUDGETS * self.criteria.budget:
                 return
             self.undecided = self.undecided.after(result, trial)
             if verdict == "stable":
@@ -204,10 +204,10 @@ class _Search:
                     step = max(step, min(2 * step, GROWTH * trial))
 
     def _criteria(self, borne: State) -> Criteria:
-        """When a load brings down a wall that bears the one before: it moves as far again as it has come at rest.
+        """Criteria of collapse at the next load: the wall must move again by as much as it has moved so far at rest.
 
-        Where joints are soft beside the load, one more step moves it farther than what is a fall of others. Walls
-        without weight come by another way to the load under which they fell.
+        If joints are soft relative to the load, one more step displaces such a wall farther than a collapse displaces
+        others. Walls without weight approach the load under which they fell in a different way.
         """
         if self.run.system.weightless:
             return self.criteria
@@ -216,7 +216,7 @@ class _Search:
         return replace(self.criteria, collapse=self.criteria.collapse * max(1.0, come))
 
     def _load_at_once(self) -> Growth:
-        """Put the first step on at once, and the same again while nothing is lost: elastic walls know no order.
+        """Apply the first step at once, and double it while nothing is lost: elastic walls do not depend on the order.
 
         Returns how the load grows from there.
         """
@@ -233,14 +233,14 @@ class _Search:
             if verdict != "stable" or not loaded.has_lost_nothing_since(borne):
                 break
             result.add(load, loaded, "stable", None)
-            for _ in range(CALM):  # observers take a wall to be at rest that is so at as many looks
+            for _ in range(CALM):  # observers take a wall as at rest after this many checks at rest
                 self.observe(run, loaded, load)
             softness = run.system.farthest(loaded.motion - dead.motion, criteria.collapse) / load
             load *= 2
-        return Growth(run, criteria, FAR * self.bound, unhurried, softness)
+        return Growth(run, criteria, FAST_FRACTION * self.bound, unhurried, softness)
 
     def _next_trial(self, step: float) -> float | None:
-        """Next load to try; None where the bracket is narrow enough, or around undecided loads."""
+        """Next load to try; None if the bracket, or that around undecided loads, is narrow enough."""
         result, system = self.result, self.run.system
         narrowest = RESOLVED * self.criteria.rest / (system.measure(system.live) or 1.0)
         enough = max(self.tolerance * (result.upper or 0.0), narrowest)
@@ -249,13 +249,13 @@ class _Search:
                 return _next_load(result, step, self.undecided, self.tolerance, self.bound)
             result.verdict = "undecided"
             return None
-        # A wall without weight snaps, and may be carried past a rest where the load comes from far away. One that sways
-        # may have been on its way to one.
+        # A wall without weight snaps, and may be carried past a rest if the load comes from far below. A wall that
+        # sways may have been on its way to a rest.
         wants_more = result.tried_from != result.lower and (system.weightless or self._sways())
         return result.upper if wants_more else None
 
     def _sways(self) -> bool:
-        """Whether the wall, at rest, came half as far as may count as a fall from where the load last grew to one."""
+        """Whether the wall moved half-way to a collapse between the rests at `tried_from` and at `lower`."""
         result = self.result
         if result.lower is None or result.tried_from is None:
             return False
@@ -267,12 +267,12 @@ class _Search:
 
 
 def _next_load(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float, bound: float) -> float:
-    """Next load to try: a step up, or the middle of the bracket; beside an undecided load, or well off two."""
+    """Next load to try: a step up, or the middle of the bracket; near one undecided load, or well away from several."""
     lower, upper = result.lower or 0.0, result.upper
     if not undecided.loads:
         if upper is not None:
             return (lower + upper) / 2
-        # Just above the bound a wall falls ever so slowly: not where the first step alone is beyond it.
+        # Just above the bound a wall falls extremely slowly: try a load there unless the first step alone is beyond it.
         edge = bound * (1 + tolerance / 2)
         return edge if 0 < lower < edge < lower + step else lower + step
     low, high = min(undecided.loads), max(undecided.loads)

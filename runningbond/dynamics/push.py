@@ -1,7 +1,7 @@
-"""How walls are pushed far by their live load: its power is kept as it goes, and the multiplier follows.
+"""How walls are pushed to large displacements by their live load: its power is prescribed, the multiplier follows.
 
-The blocks that go farthest go as fast as one another from row to row, whichever they are, so that a push takes as long
-where few of them fall as where all do. It begins slowly, in short rows, for most walls peak at once.
+The blocks that move farthest keep the same speed from row to row, whichever they are, so a push takes as long if few
+blocks fall as if all do. It begins slowly, in short rows, because most walls reach their peak at once.
 """
 
 from collections.abc import Iterator
@@ -14,71 +14,71 @@ import numpy as np
 from runningbond.results.outcome import number, two_digits
 from runningbond.scene import Array, Indices, Scene
 
-from .lead import LITTLE, LOSS, ROWS, SEEN, Lead, Traverse
+from .lead import LITTLE, LOSS, ROWS, STRIDE, Lead, Traverse
 from .peaks import Peaks
 from .run import CALMING, MOVING, Run
 from .state import State
 from .system import BlockSystem
 
 MOST_ROWS = 4
-"""Rows of a push, in those that it takes if no block goes farther than the control point."""
+"""Most rows of a push, relative to the number needed if no block moves farther than the control point."""
 
-BEYOND = 1.25
-"""How much farther blocks are expected to go the next time than they went before the wall fell: slower, later."""
+MARGIN = 1.25
+"""Factor on how far blocks moved before the wall fell, to expect how far they move in the next, slower traverse."""
 
-LESS = 0.5
-"""Least part of how far they were expected to go: a push that is far too fast throws blocks off, and seems to end."""
+LEAST_REACH = 0.5
+"""Least factor on the expected displacement per traverse: a push far too fast throws blocks off and seems to end."""
 
-SLOWEST, FASTER, GATHERED = 0.01, 1.05, 0.01
-"""Part of its speed at which a push begins, how much faster it goes in each row, and the part that it gathers at most.
+START_SPEED, SPEED_GROWTH, LARGEST_GAIN = 0.01, 1.05, 0.01
+"""Fraction of the speed at which a push begins, factor by which it grows per row, and largest fraction gained per row.
 
-What gathers speed takes a load that holds nothing: it is the smaller the longer that takes, and least at the peak.
+Acceleration takes a load that nothing balances: it is smaller the longer the acceleration takes, and least at the peak.
 """
 
-QUICKER = 2.0
-"""How much more power a row may have than the one before, as it turns out how far that moves blocks."""
+POWER_GROWTH = 2.0
+"""Largest growth of the power from one row to the next, as the displacements of the blocks become known."""
 
-HALF = 0.5
-"""Part of the largest multiplier down to which a curve is to settle: in the end walls fall one way or another."""
+COMPARED_DOWN_TO = 0.5
+"""Fraction of the largest multiplier down to which curves must converge: at the end walls fall in different ways."""
 
 WINDOWS = 4
-"""Most windows of a row whose mean multipliers are looked at: all blocks are pushed, and the push shakes with them."""
+"""Most windows of a row whose mean multipliers are used: all blocks are pushed, and the push fluctuates with them."""
 
-EARLY = 0.01
-"""Part of a path before which a peak is told by the few short rows in which a push gathers speed."""
+EARLY_PEAK = 0.01
+"""Fraction of the path before which the few short rows in which a push accelerates do not resolve a peak."""
 
-AT_ONCE = 1e-6
-"""Part of its distance by which a control point that stays moves as its springs relax."""
+RELAXATION_PART = 1e-6
+"""Fraction of the distance by which a control point that stays in place moves because its springs relax."""
 
-STAYS = 0.01
-"""Part of the path of the blocks that go farthest by which a point that counts as staying where it is goes at most."""
+STATIONARY_PART = 0.01
+"""Largest displacement of a control point that stays in place, relative to that of the blocks that move farthest."""
 
 ControlPoint: TypeAlias = tuple[Indices, Array, Array]
-"""Blocks ``(n,)``, point and direction ``(2,)`` of a displacement, as of `Scene.control_point`."""
+"""Blocks ``(n,)``, point and direction ``(2,)`` of a displacement, as in `Scene.control_point`."""
 
 
 def finite_run(system: BlockSystem, scene: Scene) -> Run:
-    """The bodies of a scene at finite displacements, damped as what leads them asks for.
+    """A run of a scene's bodies at finite displacements, with the damping that suits their control.
 
-    Of what a live load pushes, all is damped that shakes, and nothing drags on what drifts.
+    If a live load pushes the wall, all vibrations are damped, and drift is not slowed down.
     """
     return Run(system, local=MOVING) if scene.is_led else Run(system, local=CALMING, damping="combined")
 
 
 @dataclass(frozen=True, eq=False)
 class Push(Lead):
-    """How a wall is pushed, from its rest under the dead load, until its control point has gone a `distance` [m].
+    """How a wall is pushed, from the rest under its dead load, until its control point has moved by a `distance` [m].
 
-    It ends before that where the live load has fallen to nothing: there the wall stands on the brink by itself.
+    The push ends earlier if the multiplier has fallen to zero: there the wall is at the limit of stability by itself.
     """
 
     distance: float = np.inf
-    reach: float = np.inf  # how far the blocks that go farthest are expected to go [m]; the distance, if not known
-    elsewhere: ControlPoint | None = None  # where displacements are read in place of a control point that stays
+    reach: float = np.inf  # expected displacement of the blocks that move farthest [m]; the distance, if unknown
+    elsewhere: ControlPoint | None = None  # where displacements are read if the control point stays
 
     @property
     def answer(self) -> str:
-        """What the answer of a traverse is."""
+        """Name of the answer of a traverse."""
         return "largest multiplier along the path"
 
     @property
@@ -89,12 +89,12 @@ class Push(Lead):
 
     @property
     def least_work(self) -> float:
-        """Work [J] beside which the energy ledger has to add up: loads do none where nothing resists them."""
+        """Least work [J] to which the ledger's residual is relative: loads do no work if nothing resists them."""
         return LITTLE * self.work_of_a_block
 
     @property
     def goals(self) -> Array:
-        """How far the blocks that go farthest are expected to go."""
+        """Expected displacement of the blocks that move farthest."""
         return np.array([self.distance if np.isinf(self.reach) else self.reach])
 
     def moved(self, state: State) -> float:
@@ -110,7 +110,7 @@ class Push(Lead):
         return float(((self._places(block, np.tile(at, (len(block), 1)), motion) - at) @ direction).mean())
 
     def _places(self, block: Indices, at: Array, motion: Array) -> Array:
-        """Where points of blocks ``(n,)``, ``(n, 2)`` [m], are in a motion ``(nd,)``, ``(n, 2)`` [m]."""
+        """Positions of points of blocks ``(n,)``, ``(n, 2)`` [m], after a motion ``(nd,)``, ``(n, 2)`` [m]."""
         contacts = self.run.system.contacts
         if contacts is None:
             raise TypeError("walls are pushed at finite displacements")
@@ -118,7 +118,7 @@ class Push(Lead):
 
     @property
     def read_at(self) -> str:
-        """Where displacements are read, if the control point stays where it is."""
+        """Note on where displacements are read, if the control point stays in place."""
         if self.elsewhere is None:
             return ""
         where = self.scene.blocks.place(self.elsewhere[1])
@@ -132,13 +132,13 @@ class Push(Lead):
         for place in (None, *filter(None, [self.elsewhere]), *self._others(motions[-1])):
             lead = replace(self, elsewhere=place)
             moved = [lead._control(motion) - lead._at_rest for motion in motions]
-            if np.abs(moved).max() > STAYS * traverse.gone:
+            if np.abs(moved).max() > STATIONARY_PART * traverse.gone:
                 traverse.elsewhere = place
                 traverse.rows[:] = [row._replace(moved=at) for row, at in zip(traverse.rows, moved, strict=True)]
                 return
 
     def _others(self, motion: Array) -> Iterator[ControlPoint]:
-        """Control points of all live loads, then the corners that go farthest along each in a motion ``(nd,)``."""
+        """Control points of all live loads, then the corners that move farthest along each in a motion ``(nd,)``."""
         points = [load.control(self.scene) for load in self.scene.load.live]
         yield from points
         owner, corner = self.scene.blocks.owner, self.scene.blocks.vertices
@@ -149,48 +149,48 @@ class Push(Lead):
 
     @cached_property
     def _load(self) -> float:
-        """The live load on all that moves, at λ = 1 [N]; of couples alone, as forces that are a block apart."""
+        """The live load on all moving modes at λ = 1 [N]; for couples alone, as forces one block size apart."""
         system = self.run.system
         x, y, moment = np.where(np.isfinite(system.mass), system.live, 0.0)[system.rigid].T
         couples = np.abs(moment) / self.scene.block_sizes[system.owner]
         return float(np.hypot(x, y).sum() or couples.sum() or 1.0)
 
     def after(self, traverse: Traverse) -> Lead:
-        """Expect blocks to go as far the next time as they went before the wall fell, and a little farther.
+        """Set the expected displacement from how far blocks moved before the wall fell, plus a margin.
 
-        Where they went on without either end in sight, as far as the control point needs them to.
+        If the wall did not fall and its control point did not reach the distance, extrapolate to that distance.
         """
         lead = replace(self, elsewhere=traverse.elsewhere)
         if traverse.verdict == "collapse" and traverse.gone:
-            return replace(lead, reach=self.longest * min(1.0, max(LESS, BEYOND * traverse.gone / self.longest)))
+            return replace(lead, reach=self.longest * min(1.0, max(LEAST_REACH, MARGIN * traverse.gone / self.longest)))
         if traverse.verdict == "undecided":
             came = abs(traverse.rows[-1].moved) / self.distance
-            return replace(lead, reach=traverse.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
+            return replace(lead, reach=traverse.gone * min(MARGIN / max(came, LITTLE), MOST_ROWS))
         return lead
 
     def kept(self, traverses: list[Traverse]) -> Traverse:
-        """The last that was gone to its end, if one was: the others begin ever more slowly."""
+        """The last complete traverse, if there is one: the later ones begin more and more slowly."""
         return traverses[-2] if len(traverses) > 1 else traverses[-1]
 
     def onward(self, curve: Array) -> Array:
-        """The curve towards the side to which the control point goes in the end: other loads may push it back."""
+        """The curve, positive towards the final side of the control point: other loads may push the point back."""
         return curve * (np.sign(curve[-1, 0]) or 1.0, 1.0)
 
     def apart(self, fast: Traverse, slow: Traverse) -> float:
-        """How far curves of two speeds are apart on the average until half of the answer is left, relative to it."""
+        """Mean distance of the curves at two speeds, until half of the answer is left, relative to the answer."""
         (at, force), (other, before) = self.onward(slow.curve).T, self.onward(fast.curve).T
         top = int(force.argmax())
-        lost = top + np.flatnonzero(force[top:] < HALF * force[top])
+        lost = top + np.flatnonzero(force[top:] < COMPARED_DOWN_TO * force[top])
         told = slice(int(lost[0]) if len(lost) else None)
         apart = np.abs(np.interp(at[told], np.maximum.accumulate(other), before) - force[told])
         return float(apart.mean()) / slow.answer if slow.answer > self.least else 0.0
 
     def failing(self, curve: Array) -> int:
-        """The row of a curve ``(n, 2)`` in which the wall is seen to fail: just past the peak, while it is as built."""
-        return min(len(curve) - 1, int(curve[:, 1].argmax()) + SEEN)
+        """Row of a curve ``(n, 2)`` in which the wall fails: just after the peak, while it is nearly undeformed."""
+        return min(len(curve) - 1, int(curve[:, 1].argmax()) + STRIDE)
 
     def before(self, curve: Array) -> str:
-        """A first peak, if the multiplier fell far from it before it rose to its largest: a wall may come to lean."""
+        """Note on a first peak, if the multiplier fell far from it before rising to its largest: a wall may lean."""
         moved, load = curve[: curve[:, 1].argmax()].T
         fallen = np.flatnonzero(load < LOSS * np.maximum.accumulate(load))
         first = int(load[: fallen[0]].argmax()) if len(fallen) else 0
@@ -201,24 +201,24 @@ class Push(Lead):
         return f"the multiplier had fallen from {peak} to {low} before"
 
     def remedy(self, curve: Array) -> str:
-        """Ask for a shorter path of a wall whose peak is told by a few rows at its beginning."""
+        """Advice to shorten the path if only a few rows at its beginning resolve the peak."""
         peak = abs(curve[curve[:, 1].argmax(), 0])
-        if peak > EARLY * np.abs(curve[:, 0]).max():
+        if peak > EARLY_PEAK * np.abs(curve[:, 0]).max():
             return ""
         return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
 
     def fall(self, curve: Array) -> str:
-        """How a wall has fallen at the end of its curve ``(n, 2)``."""
+        """Note on how a wall has fallen at the end of its curve ``(n, 2)``."""
         (before, above), (after, below) = curve[-2:].tolist()
         if below > 0:
             return super().fall(curve)
         brink = before + (after - before) * above / (above - below)
-        if abs(brink) < AT_ONCE * self.distance:
+        if abs(brink) < RELAXATION_PART * self.distance:
             return "the multiplier falls to nothing while the control point stays where it is"
         return f"the multiplier falls to nothing at {brink:.4g} m"
 
     def go(self, traverse: Traverse, speed: float) -> State:
-        """Push at a speed of the blocks that go farthest [m/s]; the state at the end."""
+        """Push at a speed of the blocks that move farthest [m/s]; return the state at the end."""
         run, state = self.run, self.start.copy()
         self.observe(run, state, 0.0)
         self.note(traverse, state, 0.0, 0.0)
@@ -235,10 +235,10 @@ class Push(Lead):
                 peaks.see(multiplier, 0.0, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                 if window == peaks.windows // 2:
                     middle = state.copy()
-            # What a row's multiplier is the mean of is there in its middle.
+            # The mean multiplier of a row belongs to the middle of the row.
             self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
             seen.append((middle.motion, self.crushed(middle)))
-            if len(traverse.rows) % SEEN == 0:
+            if len(traverse.rows) % STRIDE == 0:
                 self.observe(run, state, traverse.rows[-1].force)
             went = run.system.farthest(state.motion - before)
             traverse.gone += went
@@ -247,7 +247,7 @@ class Push(Lead):
                 break
             if abs(self.moved(state)) >= self.distance or traverse.rows[-1].force > self.most:
                 break
-            power = min(most, power / max(went / (speed * run.dt * np.dot(parts, lengths)), 1 / QUICKER))
+            power = min(most, power / max(went / (speed * run.dt * np.dot(parts, lengths)), 1 / POWER_GROWTH))
         else:
             traverse.verdict = "undecided"
         self.conclude(traverse, peaks, seen)
@@ -256,8 +256,8 @@ class Push(Lead):
 
 
 def _parts(windows: int) -> Array:
-    """Part of the speed in each window of each row, ``(rows, windows)``."""
-    parts = [SLOWEST]
+    """Fraction of the speed in each window of each row, ``(rows, windows)``."""
+    parts = [START_SPEED]
     while len(parts) < MOST_ROWS * ROWS * windows:
-        parts.append(min(1.0, parts[-1] * FASTER ** (1 / windows), parts[-1] + GATHERED / windows))
+        parts.append(min(1.0, parts[-1] * SPEED_GROWTH ** (1 / windows), parts[-1] + LARGEST_GAIN / windows))
     return np.reshape(parts, (-1, windows))

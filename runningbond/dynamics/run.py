@@ -1,4 +1,4 @@
-"""A run: a system brought forward in time, at small or at finite displacements, with its energy ledger."""
+"""A run: time integration of a system at small or at finite displacements, with its energy ledger."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -27,10 +27,10 @@ LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
 
 MOVING, CALMING = 0.2, 0.8
-"""Local damping α of what moves far: less than at rest, for it drags; and more while it comes to rest before that."""
+"""Local damping α of walls that move far, smaller because damping drags on them, or larger until they rest."""
 
 Observer: TypeAlias = Callable[["Run", State, float], None]
-"""Looks at a run, its state and the multiplier, now and then, and changes none of them."""
+"""Called now and then with a run, its state and the multiplier; changes none of them."""
 
 
 def no_observer(run: "Run", state: State, multiplier: float) -> None:
@@ -39,7 +39,7 @@ def no_observer(run: "Run", state: State, multiplier: float) -> None:
 
 @dataclass(frozen=True)
 class Ledger:
-    """Where the work of the loads went [J]; what is not accounted for is the residual."""
+    """Energy balance of a run: where the work of the loads went [J]; the rest is the residual."""
 
     external: float
     kinetic: float
@@ -51,15 +51,15 @@ class Ledger:
 
     @property
     def residual(self) -> float:
-        """Work that the integration lost or made up."""
+        """Work that the integration lost or created."""
         spent = self.kinetic + self.elastic + self.joint + self.friction + self.damped + self.ties
         return self.external - spent
 
 
 class Unstable(ArithmeticError):
-    """A run that spent more energy than it was supplied with, as too long a time step makes out of nothing.
+    """Raised if a run spends more energy than it was supplied with, as it does with too long a time step.
 
-    It says after how many steps, and the time step that was taken and one that is safe [s].
+    The message contains the number of steps, the time step taken and one that is safe [s].
     """
 
     def __init__(self, steps: int, step: float, safe: float) -> None:
@@ -71,8 +71,8 @@ class Unstable(ArithmeticError):
 class Run:
     """A system in motion.
 
-    Where the system searches for contacts, they are found anew whenever its bodies may have moved so far that one
-    is missed; the interface, and with it the stable time step, follows them.
+    If the system searches for contacts, they are searched for again whenever its bodies may have moved so far that one
+    is missed; the interface, and with it the stable time step, is updated too.
 
     Parameters
     ----------
@@ -83,11 +83,11 @@ class Run:
     viscous
         Damping ratio of the stiffness-proportional viscosity of the joints, at the bound of the highest frequency.
     dt
-        Time step [s]; where none is given a part of the stable one.
+        Time step [s]; by default a fraction of the stable one.
     part
-        That part.
+        That fraction.
     damping
-        How `local` resists: at all times, or so that what drifts is not dragged on (`update`).
+        How `local` resists: at all times, or such that drift is not slowed down (`update`).
     """
 
     def __init__(
@@ -118,11 +118,11 @@ class Run:
         self._take_up(system.interface, None if search is None else search.undeformed)
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but the kernels' addresses, which are those of this process."""
+        """Everything except the kernels' addresses, which are valid only in this process."""
         return self.__dict__ | {"_addresses": None}
 
     def _take_up(self, interface: Interface, contacts: Contacts | None) -> None:
-        """Go on with an interface, on contacts."""
+        """Continue with an interface, on contacts."""
         self.interface, self._contacts = interface, contacts
         bound, closer = (
             self.system.ties.frequency_squared(square, self.system.mass)
@@ -132,7 +132,7 @@ class Run:
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
         self._addresses: Addresses | None = None
-        # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
+        # Plain tuples: unpacking a named one costs each kernel call half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
         rows = interface.law.law.history
@@ -140,15 +140,15 @@ class Run:
         self._work = (*np.zeros((2, len(self.system.mass))), *(np.zeros(interface.law.points) for _ in range(4)))
 
     def _return_to(self, state: State) -> None:
-        """Go on with the interface on the contacts of a state, which may be another one than before."""
+        """Continue with the interface on the contacts of a state, which may be another state than before."""
         if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
             self._take_up(self._update.interface_on(contacts), contacts)
 
     def _pieces(self, state: State, steps: int, load: Array, more: float | None) -> Iterator[int]:
-        """Numbers of steps to take one after the other, on contacts that are good for so many.
+        """Numbers of steps to take one after the other; the contacts stay valid during each of them.
 
-        A load ``(nd,)`` [N] is on the bodies, and up to some multiple of the live one `more`: where None is given, what
-        drove them in the last steps.
+        A load ``(nd,)`` [N] acts on the bodies, and the live load up to the multiple `more`; if that is None, the
+        multiple that drove the bodies in the last steps.
         """
         if self._update is None:
             yield steps
@@ -175,25 +175,25 @@ class Run:
         rise: float = 0.0,
         given: float = math.inf,
     ) -> None:
-        """Take steps under loads: `multiplier` times the live one, which may rise, and `dead` times the dead one.
+        """Take steps under `multiplier` times the live load, which may rise, and `dead` times the dead load.
 
         Parameters
         ----------
         state
-            Brought forward in place.
+            Integrated in place.
         multiplier, dead
             Factors on the live and the dead load.
         steps
-            How many steps.
+            Number of steps.
         rise
-            What the multiplier rises by in each step.
+            Increase of the multiplier per step.
         given
-            Energy [J] of the state besides the work of its loads, of `given`; inf does not watch the energy.
+            Energy [J] of the state apart from the work of its loads, as `given` returns it; inf disables energy checks.
 
         Raises
         ------
         Unstable
-            As soon as the energy that is watched does not add up; the state is left as it is then.
+            As soon as an energy check fails; the state is left as it is then.
         """
         if self.system.pushing is not None and (multiplier or rise):
             raise ValueError("live loads at points of bodies that turn do not stay as they are; they may drive")
@@ -201,25 +201,25 @@ class Run:
         self._advance("held", state, load, rise, steps, given)
 
     def bear(self, state: State, load: Array, steps: int) -> None:
-        """Take steps under a constant load ``(nd,)`` [N]; as `hold` does without watching the energy."""
+        """Take steps under a constant load ``(nd,)`` [N]; like `hold` without energy checks."""
         self._advance("held", state, load, 0.0, steps, math.inf)
 
     def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
-        """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier.
+        """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; return the mean multiplier.
 
-        `given` watches the energy as in `hold`.
+        `given` is used for energy checks as in `hold`.
         """
         return self._advance("driven", state, self.system.dead, speed, steps, given) / steps
 
     def carry(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
         """Take steps with supports moved at a speed [1/s], in their motion at λ = 1.
 
-        Returns the mean of what the wall presses them with, per unit of that motion [J]; `given` as in `hold`.
+        Return the mean force of the wall on them, per unit of that motion [J]; `given` as in `hold`.
         """
         return self._advance("carried", state, self.system.dead, speed, steps, given) / steps
 
     def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
-        """Take steps under a constant load and a control; what `step` sums up."""
+        """Take steps under a constant load and a control; return the sum of the multipliers of `step`."""
         total, system, number = 0.0, self.system, CONTROLS.index(control)
         if control != "held" and len(system.coupling.freedom):
             raise ValueError("modes that have inertia in common bear a load alone")
@@ -227,10 +227,10 @@ class Run:
         if control == "carried":
             live = live.copy() if system.leaning else live
         elif system.rig is not None or system.pushing is not None:
-            live = self._live()  # it turns with the beam, or with blocks
+            live = self._live()  # the live load rotates with the beam or with blocks
         more = None if control == "driven" else speed * steps if control == "held" else 0.0
         for piece in self._pieces(state, steps, load, more):
-            before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
+            before = float(load.dot(state.motion))  # the @ operator takes twice as long, for each of the intervals
             watch = (state.steps, given + state.external - before, state.supplied)
             taken, stable, multipliers, work = self._take(number, state, load, live, speed, piece, watch)
             total += multipliers
@@ -246,7 +246,7 @@ class Run:
         return total
 
     def _live(self) -> Array:
-        """The live load of the undeformed wall at λ = 1, to be turned."""
+        """A copy of the live load of the undeformed wall at λ = 1, to be rotated."""
         if self.system.pushing is not None:
             self.system.pushing.more[:] = 0.0
         return self.system.live.copy()
@@ -254,7 +254,7 @@ class Run:
     def _take(
         self, number: int, state: State, load: Array, live: Array, speed: float, steps: int, watch: Watch
     ) -> tuple[int, bool, float, float]:
-        """Take steps on the contacts that are there; what `step` returns."""
+        """Take steps on the present contacts; return the results of `step`."""
         if self._addresses is None:
             self._addresses = addresses(self.interface, self._advance_modes, self._memory)
         arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
@@ -271,7 +271,7 @@ class Run:
         return found
 
     def _ahead(self, state: State, load: Array) -> State:
-        """A copy of a state that is a step ahead under a load ``(nd,)`` [N], but for its count of steps and works."""
+        """A copy of a state, one step ahead under a load ``(nd,)`` [N], except for its count of steps and its works."""
         if self.local:
             raise ValueError("local damping would remember a step that is not taken")
         self._return_to(state)
@@ -280,27 +280,27 @@ class Run:
         return ahead
 
     def held_late(self, state: State) -> "Run":
-        """The run of the system whose dead load is on (`BlockSystem.held_late`); a state is brought to rest there."""
+        """The run of the system with its dead load on (`BlockSystem.held_late`); stops the late modes of a state."""
         system = self.system.held_late
         if system is self.system:
             return self
         late = self.system.late
         state.velocity[late] = 0.0
-        # What is held from now on has been damped; the ledger counts the damping of what moves.
+        # The work of damping on modes held from now on is kept: the ledger counts `damped` of moving modes only.
         state.absorbed += float(state.damped[late].sum())
         state.damped[late] = 0.0
         return self.of_system(system)
 
     @cached_property
     def drifting(self) -> "Run":
-        """The same run with combined damping, which does not drag on what drifts, and as little of it as moves far.
+        """The same run with combined damping, which does not slow down drift, and an α no larger than `MOVING`.
 
-        It drags on what drifts and shakes, the less the less there is of it.
+        It does slow down drift with superposed vibration, the less the smaller α.
         """
         return self._of(self.system, min(self.local, MOVING), "combined")
 
     def of_system(self, system: BlockSystem) -> "Run":
-        """The same run of another system of the same bodies."""
+        """The same run for another system of the same bodies."""
         return self._of(system, self.local, self._damping)
 
     def _of(self, system: BlockSystem, local: float, damping: Damping) -> "Run":
@@ -308,10 +308,10 @@ class Run:
         return Run(system, local=local, viscous=self.viscous, dt=step, part=part, damping=damping)
 
     def unaccounted(self, state: State, least: float = 0.0, since: State | None = None) -> float:
-        """Share of the work of the loads, or of a least one [J], that the energy ledger misses, all or since a state.
+        """Share of the work of the loads, or of at least `least` [J], that the ledger misses: in all or since a state.
 
-        Works of the dead and of the live load each count, for where a slender wall topples they nearly cancel, and so
-        does what ties have given of the energy that preloads put into them.
+        The works of the dead and the live load count separately, because they nearly cancel while a slender wall
+        topples, and so does the energy that ties have released from their preloads.
         """
         residual, *works = self._works(state)
         if since is not None:
@@ -320,7 +320,7 @@ class Run:
         return float(abs(residual) / work) if work else 0.0
 
     def _works(self, state: State) -> tuple[float, float, float, float]:
-        """What the ledger misses, and works of the dead load, of the live one and of preloads [J]."""
+        """Residual of the ledger, and works of the dead load, of the live load and of the preloads [J]."""
         ledger, dead = self.ledger(state), self.dead_work(state)
         return ledger.residual, dead, ledger.external - dead, min(0.0, ledger.ties)
 
@@ -329,7 +329,7 @@ class Run:
         return float(self.system.dead @ state.motion) + state.turned
 
     def driven(self, state: State) -> float:
-        """Displacement of what is driven, along the live load at λ = 1, times that [J]."""
+        """Displacement of the driven point along the live load at λ = 1, times that load [J]."""
         rig, live = self.system.rig, self.system.live
         return float(live @ state.motion) if rig is None else live[rig.freedom[0]] * rig.displacement(state.motion)
 
@@ -341,7 +341,7 @@ class Run:
         return float(live @ state.velocity)
 
     def given(self, state: State) -> float:
-        """Energy [J] of a state that its loads did not supply: of ties' preloads, or of being set in motion by hand."""
+        """Energy [J] of a state that loads did not supply: preloads of ties, or an initial motion set by hand."""
         return max(0.0, -self.ledger(state).residual) - self.system.ties.stored(np.zeros(len(self.system.ties)))
 
     def unbalanced(self, state: State) -> float:
@@ -349,29 +349,33 @@ class Run:
         return self.system.measure(state.unbalanced)
 
     def forces(self, state: State) -> tuple[Array, Array]:
-        """Normal and tangential force at each point ``(np,)`` [N], without a change of state."""
+        """Normal and tangential force at each point ``(np,)`` [N]; the state is not changed."""
         _, _, normal, tangential = self.tractions(state)
         return normal * self.interface.area, tangential * self.interface.area
 
     def tractions(self, state: State) -> tuple[Array, Array, Array, Array]:
-        """Opening and slip [m] and tractions [Pa] of the points, without a change of state."""
+        """Opening and slip [m] and tractions [Pa] of the points; the state is not changed."""
         self._return_to(state)
         law = self.interface.law
         opening, slip = self.interface.jumps(self.system.unrestrained(state.motion))
         normal, tangential = np.zeros((2, law.points))
-        # At rest: the viscosity, of no account then, would need the rate of a step that is not taken.
+        # Without viscosity, which is negligible at rest: it would need the rate of a step that is not taken.
         law.kernel(opening, slip, law.parameters, state.history.copy(), 0.0, normal, tangential)
         return opening, slip, normal, tangential
 
     def crushing_note(self, state: State) -> str:
-        """What is to be said of joints that are crushed in a state; empty where none is."""
+        """Note on joints that are crushed in a state; empty if none is."""
         crushed = self.interface.law.crushed(state.history).any()
-        return "crushed joints bear bending on their points to 3 to 5 %, which is not in the bracket" if crushed else ""
+        return (
+            "crushed joints carry bending at discrete points, to 3 to 5 %, which the bracket does not include"
+            if crushed
+            else ""
+        )
 
     def at_joints(self, state: State) -> Array:
         """Opening, slip [m], normal, tangential force [N], damage, plastic closure [m] of joints' points, ``(6, n)``.
 
-        At finite displacements they are points of the undeformed wall's joints, and what has met since is left out.
+        At finite displacements these are points of the undeformed wall's joints; contacts made since are left out.
         """
         jumps, tractions = np.split(np.array(self.tractions(state)), 2)
         law, search = self.interface.law, self.system.contacts
@@ -380,7 +384,7 @@ class Run:
         return values if search is None else search.at_joints(contacts_of(state), values)
 
     def pulls_at_joints(self, state: State) -> Array:
-        """What b exerts on a at joints' points at finite displacements, ``(2, np)`` [N], along x and y in space."""
+        """Force of block b on a at joints' points at finite displacements, ``(2, np)`` [N], along x and y in space."""
         search = self.system.contacts
         if search is None:
             raise TypeError("at small displacements forces have the directions of the undeformed joints")
@@ -410,11 +414,11 @@ class Run:
         return np.asarray(total + search.resultants(contacts_of(state), state.motion, np.array(self.forces(state))))
 
     def ledger(self, state: State, load: Array | None = None) -> Ledger:
-        """Account for the work of the loads so far.
+        """Energy balance of the loads so far.
 
-        Velocities are half a step behind motions, and works of joints a step. With the load ``(nd,)`` [N] that is on,
-        both are those of the motion's time, the kinetic energy ½ m v⁻ v⁺, and central differences of an elastic
-        system under a constant load have no residual.
+        Velocities are half a step behind motions, and works of joints one step. If the `load` ``(nd,)`` [N] that acts
+        is given, both are evaluated at the time of the motion, with the kinetic energy ½ m v⁻ v⁺; central differences
+        of an elastic system under a constant load then have no residual.
         """
         opening, _, normal, tangential = self.tractions(state)
         ahead = state if load is None else self._ahead(state, load)

@@ -1,4 +1,4 @@
-"""Where a system is, and what it has been through."""
+"""State of a system: its motion, and its history."""
 
 from dataclasses import dataclass, field, replace
 
@@ -11,33 +11,33 @@ from runningbond.scene import Array, Mask
 from .system import BlockSystem, Interface
 
 PLASTIC_SLIP = "plastic slip"
-"""Name of the row of a law's history that holds the slip [m] at which a point would be free of shear."""
+"""Name of the row of a law's history with the slip [m] at which a point is free of shear."""
 
 
 @dataclass(eq=False)
 class State:
-    """Where a system is: brought forward in place by the integrator."""
+    """State of a system, integrated in place."""
 
     # (nd,) modal displacement, and velocity half a step behind
     motion: Array
     velocity: Array
-    history: Array  # (rows, np) history of the joint points, as their law keeps it
-    damped: Array  # (nd,) work done against damping [J], mode by mode
-    unbalanced: Array  # (nd,) force of the last step
-    # the contacts that the history is of, a column each; None at small displacements, which know but one set
+    history: Array  # (rows, np) history variables of the joint points, as their law defines them
+    damped: Array  # (nd,) work of damping [J], mode by mode
+    unbalanced: Array  # (nd,) unbalanced force of the last step
+    # the contacts to which the columns of the history belong; None at small displacements, where contacts do not change
     contacts: Contacts | None = None
     bears: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (nc,) the contacts' frames (`joints.frames`)
     external: float = 0.0  # work of the loads [J]
-    # part of it: what dead loads do beyond the work that they would do constant, as they act at rest [J] (`rig`)
+    # part of it: by how much the work of dead loads exceeds that of constant ones, as they act at rest [J] (`rig`)
     turned: float = 0.0
-    multiplier: float = 0.0  # of the live load, where that drives: its mean over the last steps
+    multiplier: float = 0.0  # of the live load, if it drives: its mean over the last steps
     steps: int = 0  # steps taken
     time: float = 0.0  # time since the start [s]
-    # (1,) largest energy that was supplied at any look at it [J]
+    # (1,) largest energy supplied at any energy check [J]
     supplied: Array = field(default_factory=lambda: np.zeros(1))
     stretch: Array = field(default_factory=lambda: np.zeros(0))  # (nt,) plastic elongation of the ties [m]
-    # work spent on earlier contacts, and on their viscosity or that of modes that are held since, or that preloads of
-    # ties did not do, for they came slowly [J]
+    # work dissipated on earlier contacts, and, in `absorbed`, by their viscosity and by modes held since, or not done
+    # by preloads of ties because they came slowly [J]
     friction: float = 0.0
     absorbed: float = 0.0
 
@@ -58,19 +58,19 @@ class State:
         return cls(motion, np.zeros(nd), history, np.zeros(nd), np.zeros(nd), contacts, bears, stretch=stretch)
 
     def copy(self) -> "State":
-        """A state that goes its own way from here."""
+        """An independent copy of the state."""
         arrays = ("motion", "velocity", "history", "damped", "unbalanced", "bears", "supplied", "stretch")
         return replace(self, **{name: getattr(self, name).copy() for name in arrays})
 
     def has_lost_nothing_since(self, before: "State") -> bool:
-        """Whether no joint point and no tie has yielded since: it would come back, as elastic bodies do."""
+        """Whether no joint point and no tie has yielded since: the system would return, as elastic bodies do."""
         kept = [FRICTION_WORK, *range(len(COMMON_ROWS), len(self.history))]
         same = np.array_equal(self.history[kept], before.history[kept])
         return same and np.array_equal(self.stretch, before.stretch)
 
 
 def frames_of(interface: Interface, contacts: Contacts | None) -> Mask:
-    """Frames ``(nc,)`` that the jumps of an interface on contacts were last told in."""
+    """Frames ``(nc,)`` in which the jumps of an interface on contacts were last expressed."""
     bears = np.zeros(0 if contacts is None else len(contacts), dtype=bool)
     history = np.zeros((interface.law.rows, interface.law.points))
     interface.reframe(tuple(interface.geometry), (bears, -1), history)

@@ -1,8 +1,8 @@
-"""Bodies and the interface between them: masses, loads and restraint, joint points and how modes move them.
+"""Bodies and the interface between them: masses, loads and restraints, and joint points with their kinematics.
 
-A model is a choice of modes and a pair of kernels, `gather` from motions to jumps and `scatter` back from joint
-forces to motions; the integrator sees vectors only and the law jumps only. At small displacements the interface is
-one for ever; at finite ones a `ContactSearch` finds the contacts anew as bodies move, and an interface for them.
+A model is a choice of modes and a pair of kernels, `gather` from motions to jumps and `scatter` from joint forces back
+to motions; the integrator depends on vectors only and the law on jumps only. At small displacements the interface never
+changes; at finite ones a `ContactSearch` updates the contacts as bodies move, and provides an interface for them.
 """
 
 from collections.abc import Callable
@@ -29,14 +29,14 @@ Kernel: TypeAlias = Callable[..., Any]
 
 
 class Restraint(NamedTuple):
-    """Bodies whose motion is restrained at points, in coordinates that leave the restraint satisfied."""
+    """Bodies that are restrained at points, in coordinates that satisfy the restraint."""
 
     freedom: Indices  # (nr, 3) freedoms of each such body
-    basis: Array  # (nr, 3, 3) motion of the body per coordinate, mass-orthogonal; columns that are not needed are zero
+    basis: Array  # (nr, 3, 3) motion of the body per coordinate, mass-orthogonal; unused columns are zero
 
 
 def restrain(row: Array, restraint: Restraint) -> Array:
-    """A row per motion of bodies ``(nd,)``, in place turned into one per restrained coordinates."""
+    """Transform a row per motion of bodies ``(nd,)``, in place, into a row per restrained coordinate."""
     for freedom, basis in zip(*restraint, strict=True):
         row[freedom] = np.einsum("ij,i->j", basis, row[freedom])
     return row
@@ -46,15 +46,15 @@ class Carried(NamedTuple):
     """Supports that move."""
 
     motion: Array  # (nd,) motion of their modes, which are held, at λ = 1
-    displacement: float = 0.0  # how far that takes them [m]
-    work: float = 0.0  # work of their reaction against it [J] where they bear all of the dead load
+    displacement: float = 0.0  # displacement in that motion [m]
+    work: float = 0.0  # work of their reaction against it [J] if they carry all of the dead load
 
 
 NOTHING_CARRIED = Carried(np.zeros(0))
 
 
 class Coupling(NamedTuple):
-    """Inertia that modes have in common, besides the mass of each: a force on one of them accelerates the others."""
+    """Inertia that couples modes, in addition to the mass of each: a force on one of them accelerates the others."""
 
     freedom: Indices  # (n,) the modes
     inertia: Array  # (n, n) [kg]; positive semidefinite
@@ -74,21 +74,21 @@ class Interface:
 
     law: KernelLaw  # law of the joint points
     area: Array  # (np,) area that each joint point stands for [m²]
-    # compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
-    # force)``; the latter subtracts the forces of the joints' tractions from `force`
+    # compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry, force)``;
+    # the latter subtracts the forces of the joints' tractions from `force`
     gather: Kernel
     scatter: Kernel
-    geometry: NamedTuple  # the arrays that the two kernels share: a named tuple of the kernels' module
-    # largest ω² [1/s²] of any body against its share of its joints: an upper bound of the system's
+    geometry: NamedTuple  # arrays that the two kernels share: a named tuple of the kernels' module
+    # largest ω² [1/s²] of any body on its share of its joints: an upper bound for the system
     frequency_squared: float
-    closer: float | None = None  # the system's own, where known to a hundredth: time steps go by it
-    # compiled kernel ``reframe(geometry, frames, history)``: after `gather`, retells the history in the jumps' frames
+    closer: float | None = None  # the system's own ω², if known to a hundredth: then it determines time steps
+    # compiled kernel ``reframe(geometry, frames, history)``: after `gather`, transforms the history to its frames
     reframe: Kernel = keep_frames
 
     def jumps(self, motion: Array) -> tuple[Array, Array]:
         """Opening and slip of the points after a motion ``(nd,)``, ``(np,)`` each [m]."""
         opening, slip = np.zeros((2, self.law.points))
-        self.gather(motion, tuple(self.geometry), opening, slip)  # plain, as in the steps: compiled once
+        self.gather(motion, tuple(self.geometry), opening, slip)  # a plain tuple, as in the steps: compiled once
         return opening, slip
 
 
@@ -108,30 +108,30 @@ class ContactSearch(Protocol):
         """The interface of a system's bodies on other contacts than the undeformed ones."""
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
-        """A number, for each contact, of the corner that rests and the side it rests on after a motion ``(nd,)``."""
+        """A number for each contact that identifies its resting corner and its side after a motion ``(nd,)``."""
 
     def deformation(self, motion: Array) -> float:
-        """At most how far a point of a body is from where a rigid one would have it [m]."""
+        """Upper bound of the distance of points of bodies from their positions if the bodies were rigid [m]."""
 
     def points(self, contacts: Contacts) -> "tuple[Indices, Indices]":
-        """A key of each point of the interface on contacts, and the end that it is or −1, two ``(np,)``."""
+        """A key for each point of the interface on contacts, and the end that the point is or −1, two ``(np,)``."""
 
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
-        """What is at the undeformed wall's joint points, ``(6, n)``, from what is at contacts' points ``(6, np)``.
+        """Values at the undeformed wall's joint points, ``(6, n)``, from values at contacts' points ``(6, np)``.
 
-        That is openings and slips [m], normal and tangential forces [N], damage, and plastic closure [m].
+        They are openings and slips [m], normal and tangential forces [N], damage, and plastic closure [m].
         """
 
     def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """What block b of each point exerts on a after a motion ``(nd,)``, ``(2, np)`` [N], along x and y in space.
+        """Force of block b on block a at each point after a motion ``(nd,)``, ``(2, np)`` [N], along x and y in space.
 
-        It is that of the points' normal and tangential forces ``(2, np)`` [N].
+        `force` has the points' normal and tangential forces ``(2, np)`` [N].
         """
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """Forces on each body and their moments about the origin after a motion ``(nd,)``, ``(n, 3)`` [N, N, N m].
 
-        They are those of the points' normal and tangential forces ``(2, np)`` [N].
+        `force` has the points' normal and tangential forces ``(2, np)`` [N].
         """
 
 
@@ -146,25 +146,25 @@ class BlockSystem:
     dead: Array
     live: Array
     control: Array  # (nd,) displacement of the control point along the live load, per modal motion
-    force_unit: Array  # (nd,) force of each mode against which its unbalanced one is measured; inf where a mode is held
-    rigid: Indices  # (n, 3) where in the motion each body's translations along x and y [m] and its rotation [rad] stand
-    owner: Indices  # (n,) block that each body is part of
+    force_unit: Array  # (nd,) unit of each mode's unbalanced force; inf where a mode is held
+    rigid: Indices  # (n, 3) indices in the motion of each body's translations along x and y [m] and its rotation [rad]
+    owner: Indices  # (n,) block to which each body belongs
     restraint: Restraint  # bodies held at points
-    interface: Interface  # what holds them together: at finite displacements that of the undeformed contacts
+    interface: Interface  # joints between the bodies: at finite displacements those of the undeformed contacts
     ties: TieRows = NO_TIE_ROWS  # bars between them
     late: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))  # modes held once the dead load is on
     carried: Carried = NOTHING_CARRIED  # supports that move
-    contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
-    rig: Rig | None = None  # what drives its beam at finite displacements
-    turning: TurningLoads | None = None  # dead loads that turn with its bodies there,
+    contacts: ContactSearch | None = None  # search for contacts as bodies move; None at small displacements
+    rig: Rig | None = None  # rig that drives the beam at finite displacements
+    turning: TurningLoads | None = None  # dead loads that rotate with bodies at finite displacements,
     pushing: TurningLoads | None = None  # and live ones
-    leaning: TurningSupports | None = None  # supports that turn there
-    coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
-    inertia_scaling: float = 1.0  # largest factor by which bodies have more inertia than they have (`inertia`)
-    clusters: Clusters = NO_CLUSTERS  # bodies with more inertia against one another; without live load on them
-    # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
+    leaning: TurningSupports | None = None  # supports that rotate at finite displacements
+    coupling: Coupling = NOT_COUPLED  # inertia that couples modes; only if nothing but a load acts on them
+    inertia_scaling: float = 1.0  # largest factor by which the inertia of bodies is scaled up (`inertia`)
+    clusters: Clusters = NO_CLUSTERS  # bodies with more inertia in relative motion; without live load on them
+    # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None if each body is a block
     block_motion: csr_array | None = None
-    source: object = None  # what it was set up from, for observers: the wall in modal coordinates where blocks deform
+    source: object = None  # what it was built from, for observers: the wall in modal coordinates if blocks deform
 
     @property
     def freedoms(self) -> int:
@@ -173,7 +173,7 @@ class BlockSystem:
 
     @property
     def mass_along(self) -> Array:
-        """Mass that each mode moves along x and along y, ``(2, nd)`` [kg]; none where it is held."""
+        """Mass that each mode moves along x and along y, ``(2, nd)`` [kg]; zero if the mode is held."""
         along = np.zeros((2, len(self.mass)))
         for axis, modes in enumerate(self.rigid[:, :2].T):
             along[axis, modes] = np.where(np.isfinite(self.mass[modes]), self.mass[modes], 0.0)
@@ -181,12 +181,12 @@ class BlockSystem:
 
     @property
     def weightless(self) -> bool:
-        """Whether nothing loads it but the live load."""
+        """Whether only the live load acts on it."""
         return not self.dead.any()
 
     @property
     def held_late(self) -> "BlockSystem":
-        """The system whose dead load is on, and whose late modes are held."""
+        """The system with its dead load on, and its late modes held."""
         if not len(self.late):
             return self
         mass, live, unit = self.mass.copy(), self.live.copy(), self.force_unit.copy()
@@ -195,13 +195,13 @@ class BlockSystem:
         return replace(self, mass=mass, live=live, force_unit=unit, late=self.late[:0])
 
     def kinetic_energy(self, velocity: Array) -> float:
-        """Kinetic energy of what moves, at a velocity ``(nd,)`` [J]."""
+        """Kinetic energy of the moving modes at a velocity ``(nd,)`` [J]."""
         moving = np.isfinite(self.mass)
         own = float(0.5 * (self.mass[moving] * velocity[moving] ** 2).sum())
         return own + self.coupling.energy(velocity) + self.clusters.energy(velocity, self.mass)
 
     def measure(self, force: Array) -> float:
-        """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
+        """Largest of the modal forces ``(nd,)`` on moving modes, each in its unit."""
         moving, unit = self._moving
         return float((np.abs(force[moving]) / unit).max(initial=0.0))
 
@@ -212,7 +212,7 @@ class BlockSystem:
         return moving, self.force_unit[moving]
 
     def unrestrained(self, motion: Array) -> Array:
-        """Motion or velocity with restrained coordinates turned back into those of their bodies, ``(nd,)``."""
+        """Motion or velocity with restrained coordinates transformed back to those of their bodies, ``(nd,)``."""
         moved = motion.copy()
         for freedom, basis in zip(*self.restraint, strict=True):
             moved[freedom] = np.einsum("ij,j->i", basis, motion[freedom])
@@ -237,18 +237,18 @@ class BlockSystem:
 
 
 def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:
-    """Force by which unbalanced ones are measured, ``(nd,)``: its own block's weight, in each mode.
+    """Unit for the unbalanced force of each mode, ``(nd,)``: the weight of its own block.
 
-    A small block beside large ones falls as freely as they do, under forces that are nothing to them. Moments and
-    other modal forces are those that accelerate the mode as much, F (m / m_b)^{1/2}. Without weight the force of all
-    blocks is what the strongest point carries.
+    A small block beside large ones falls as freely as they do, under forces that are negligible for them. Moments and
+    other modal forces are those that accelerate the mode as much, F (m / m_b)^{1/2}. Without weight the unit for all
+    blocks is the force that the strongest point carries.
 
     Parameters
     ----------
     block : (nd,) int
         Block of each mode.
     mass : (nd,) float
-        Modal masses, not scaled; inf where a mode is held. A beam's own is that of its inertia.
+        Modal masses, not scaled; inf where a mode is held. For a beam, its inertial mass.
     live : (nd,) float
         Modal live load.
     strength
@@ -268,7 +268,7 @@ def moving_far(
     forces: tuple[Forces, Forces],
     deformation: Deformation = rigid_body,
 ) -> BlockSystem:
-    """The blocks of a scene at finite displacements: on contacts that are found anew, with what turns with them.
+    """The blocks of a scene at finite displacements: with contact search, and with what rotates with the blocks.
 
     Parameters
     ----------
@@ -291,7 +291,7 @@ def moving_far(
         contacts=contacts,
         rig=rig,
         turning=turning_loads(forces[0], points),
-        pushing=None if rig else turning_loads(forces[1], points),  # a rig turns what drives it
+        pushing=None if rig else turning_loads(forces[1], points),  # a rig rotates the load that drives it
         leaning=TurningSupports.of(scene, system.rigid),
         ties=turned_tie_rows(system.ties, scene.ties, points),
     )

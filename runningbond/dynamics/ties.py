@@ -1,10 +1,10 @@
-"""Ties in the coordinates of a system: bars that pull with what they are stretched by, yield, and never push.
+"""Ties in the coordinates of a system: bars that pull in proportion to their elongation, yield, and never push.
 
     t = min(max(k (e − e_p) + P, 0), t_y),    e = g · q
 
 with the elongation e, its plastic part e_p, the stiffness k = E A / L, the preload P and the yield force t_y. A tie
-that has yielded, or gone slack, pulls again from e_p on. At finite displacements e is what the distance of its ends is
-more than at rest, and it pulls along the line between them.
+that has yielded, or gone slack, pulls again from e_p on. At finite displacements e is the increase of the distance
+between its ends since rest, and it pulls along the line between them.
 """
 
 import math
@@ -22,25 +22,25 @@ STIFFNESS, YIELD, PRELOAD = range(3)
 """Columns of `TieRows.constants`."""
 
 STRAINED = 0.05
-"""Strain up to which ties that have not yielded count in the time step: more than steel bears."""
+"""Strain up to which ties that have not yielded count in the time step: more than steel can take."""
 
 
 class TieRows(NamedTuple):
-    """Ties: how far modes stretch each, and what it answers."""
+    """Ties: how modes elongate each of them, and its force law."""
 
-    start: Unsigned  # (nt + 1,) first entry of each, then their number
-    freedom: Unsigned  # (n,) coordinates that stretch a tie
-    share: Array  # (n,) elongation per such coordinate
+    start: Unsigned  # (nt + 1,) first entry of each, then the total number
+    freedom: Unsigned  # (n,) coordinates that elongate a tie
+    share: Array  # (n,) elongation per unit of such a coordinate
     constants: Array  # (nt, 3) stiffness [N/m], yield force and preload [N]
-    ends: BodyPoints = NO_POINTS  # (2 nt,) at finite displacements, the first ends of all and then the second ones
-    length: Array = np.zeros(0)  # (nt,) distance of the two at rest [m]
+    ends: BodyPoints = NO_POINTS  # (2 nt,) at finite displacements: the first ends of all ties, then the second ends
+    length: Array = np.zeros(0)  # (nt,) distance between the two ends at rest [m]
 
     def __len__(self) -> int:
         return len(self.constants)
 
     @property
     def slack(self) -> Array:
-        """Elongation of each that takes its preload away, ``(nt,)`` [m]."""
+        """Shortening of each tie that takes its preload away, ``(nt,)`` [m]."""
         return np.asarray(self.constants[:, PRELOAD] / self.constants[:, STIFFNESS])
 
     def elongation(self, motion: Array) -> Array:
@@ -50,12 +50,12 @@ class TieRows(NamedTuple):
         return np.array([self.share[entries] @ motion[self.freedom[entries]] for entries in self._entries()])
 
     def _spans(self, motion: Array) -> Array:
-        """From the first end of each to the second, ``(nt, 2)`` [m]."""
+        """Vectors from the first end of each to the second, ``(nt, 2)`` [m]."""
         first, second = np.split(self.ends.places(motion), 2)
         return np.asarray(second - first)
 
     def pulls(self, motion: Array, stretch: Array) -> Array:
-        """What they pull their ends with at finite displacements, ``(2 nt, 2)`` [N]; arguments as of `force`."""
+        """Forces of ties on their ends at finite displacements, ``(2 nt, 2)`` [N]; arguments as in `force`."""
         span = self._spans(motion)
         pull = (self.force(motion, stretch) / np.hypot(*span.T))[:, None] * span
         return np.concatenate([pull, -pull])
@@ -66,9 +66,9 @@ class TieRows(NamedTuple):
         return np.asarray(np.clip(k * (self.elongation(motion) - stretch) + preload, 0.0, most))
 
     def accelerations(self, mass: Array, reach: Array) -> Array:
-        """Acceleration that a newton of each gives points of the blocks at its ends at most, ``(nt,)`` [m/s²].
+        """Largest acceleration of points of the blocks at a tie's ends per newton in the tie, ``(nt,)`` [m/s²].
 
-        From the masses of the modes ``(nd,)`` and how far the blocks' points are from their centroids ``(nb,)`` [m].
+        From masses of the modes ``(nd,)`` and largest distances of blocks' points from their centroids ``(nb,)`` [m].
         """
         if not len(self.length):
             return np.zeros(0)
@@ -77,15 +77,15 @@ class TieRows(NamedTuple):
         return np.asarray(each.reshape(2, -1).sum(axis=0))
 
     def stored(self, force: Array) -> float:
-        """Energy that forces ``(nt,)`` [N] store, beyond what the preloads did [J]."""
+        """Energy stored by forces ``(nt,)`` [N], beyond the work of the preloads [J]."""
         k, _, preload = self.constants.T
         return float(((force**2 - preload**2) / (2 * k)).sum())
 
     def frequency_squared(self, joints: float, mass: Array) -> float:
-        """Bound of ω² [1/s²] with ties, from that of the joints alone and the masses of the modes ``(nd,)``.
+        """Bound of ω² [1/s²] with ties, from the bound for joints alone and the masses of the modes ``(nd,)``.
 
-        At the ratio r of the two frequencies viscous forces, lagged by a shorter step, count r times: the smallest r
-        with r² − r ≥ t, the ω² of the ties on their own in that of the joints, makes up for both.
+        If the two frequencies have the ratio r, viscous forces, lagged by a shorter step, count r times: the smallest r
+        with r² − r ≥ t, the ω² of ties alone relative to that of the joints, accounts for both.
         """
         if not len(self):
             return joints
@@ -102,10 +102,10 @@ class TieRows(NamedTuple):
         return joints * ((1 + math.sqrt(1 + 4 * own / joints)) / 2) ** 2
 
     def _reaches(self, rows: Array, elongation: Array) -> None:
-        """Add how far each coordinate moves the ends of each tie, whichever way they turn, to rows ``(nt, nd)``.
+        """Add how far each coordinate moves the ends of each tie, whatever their rotation, to rows ``(nt, nd)``.
 
-        Of the two translations one counts, for a tie is along one direction at a time. A tension that stretches it by
-        its `elongation` ``(nt,)`` [m] at most turns a body besides as it pulls on an arm r, with a stiffness of T r.
+        Only one of the two translations counts, as a tie has one direction at a time. A tension T, with an elongation
+        of at most `elongation` ``(nt,)`` [m], also turns a body as it pulls on an arm r, with a stiffness of T r.
         """
         rigid, _, arm, _, mode, shape, _ = self.ends
         tie, reach = np.tile(np.arange(len(self)), 2), np.hypot(*arm.T)
@@ -118,7 +118,7 @@ class TieRows(NamedTuple):
 
 
 def tie_rows(ties: Ties, moves: Mask, row: Callable[[int, Array, Array], Array]) -> TieRows:
-    """The ties of a scene, from which blocks move ``(nb,)`` and a ``row(block, at, direction)`` of those that do.
+    """The ties of a scene, given which blocks move ``(nb,)`` and the ``row(block, at, direction)`` of moving blocks.
 
     The row ``(nd,)`` is the displacement of a point ``(2,)`` of a block along a direction ``(2,)``, per coordinate.
     """
@@ -136,7 +136,7 @@ def tie_rows(ties: Ties, moves: Mask, row: Callable[[int, Array, Array], Array])
 
 
 def turned_tie_rows(rows: TieRows, ties: Ties, points: Callable[[Indices, Array], BodyPoints]) -> TieRows:
-    """The same ties at finite displacements, from the `points` that are of blocks ``(n,)`` at places ``(n, 2)`` [m]."""
+    """The same ties at finite displacements; `points` returns points of blocks ``(n,)`` at positions ``(n, 2)`` [m]."""
     if not len(ties):
         return rows
     ends = points(ties.block.T.ravel(), ties.ends.swapaxes(0, 1).reshape(-1, 2))
@@ -148,7 +148,7 @@ NO_TIE_ROWS = TieRows(np.zeros(1, np.uint64), np.zeros(0, np.uint64), np.zeros(0
 
 @compiled.kernel
 def _tension(constants: Array, stretch: Array, k: int, elongation: float) -> float:
-    """Force of a tie that is so much longer; its plastic elongation is kept."""
+    """Force of a tie at an elongation [m]; its plastic elongation is updated."""
     stiffness, most, preload = constants[k, 0], constants[k, 1], constants[k, 2]
     tension = stiffness * (elongation - stretch[k]) + preload
     if tension > most:
@@ -176,7 +176,7 @@ def _pull_turned(ends: Points, length: Array, constants: Array, stretch: Array, 
 
 @compiled.kernel
 def pull(ties: tuple[Unsigned, Unsigned, Array, Array, Points, Array, Array], motion: Array, force: Array) -> None:
-    """Add what ties do to modal forces ``(nd,)``; their plastic elongation, the last of the arrays, is kept."""
+    """Add the forces of ties to modal forces ``(nd,)``; update their plastic elongation, the last of the arrays."""
     start, freedom, share, constants, ends, length, stretch = ties
     if length.size > 0:
         _pull_turned(ends, length, constants, stretch, motion, force)

@@ -9,14 +9,15 @@ from runningbond.scene import Array, Indices
 
 SAFETY = 0.9
 EXPONENTS = (0.0, 0.5, 1.0)
-"""Ways to share a joint between blocks (`joint_shares`), of which the one with the lowest bound is taken."""
+"""Exponents of the ratio in which two blocks share a joint (`joint_shares`): the lowest bound is taken."""
 
 
 def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: float = 0.0) -> float:
     """Time step [s] at which central differences stay bounded.
 
-    Δt = 0.9 · (2/ω') (√(1 + ξ'²) − ξ') with ω' = √(1 + α) ω and ξ' = √(1 + α) ξ: local damping makes 1 + α times as
-    large what slows a mode down, its lagged viscous force included. Exact for α or ξ alone; for both, safe.
+    Δt = 0.9 · (2/ω') (√(1 + ξ'²) − ξ') with ω' = √(1 + α) ω and ξ' = √(1 + α) ξ: local damping multiplies all forces
+    that slow a mode down by up to 1 + α, its lagged viscous force included. Exact for α or ξ alone; for both,
+    conservative.
 
     Parameters
     ----------
@@ -38,10 +39,10 @@ def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: flo
 
 
 def joint_shares(mass: Array, exponent: float) -> Array:
-    """Factors on the two sides' own energy in a joint, by which together they exceed that of the jump, ``(n, 2)``.
+    """Factors on the two sides' own energies in a joint, with which their sum exceeds that of the jump, ``(n, 2)``.
 
-    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a². With c = (m_b / m_a)^exponent, and nothing for a
-    side that is held, two blocks of different mass share a joint fairly.
+    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a². With c = (m_b / m_a)^exponent, and factor 1 beside a
+    held side (2 for exponent 0), two blocks of different mass share a joint evenly.
 
     Parameters
     ----------
@@ -58,8 +59,8 @@ def joint_shares(mass: Array, exponent: float) -> Array:
 def block_frequency_squared(stiffness: Array, mass: Array) -> Array:
     """Largest ω² of blocks against their own share of their joints' energy, ``(nb,)`` [1/s²].
 
-    Where the two sides' shares are at least the energy of the jump between them (twice each side's own energy, for
-    one), the largest over all blocks bounds the system without a global matrix.
+    If the two sides' shares add up to at least the energy of the jump between them (twice each side's own energy, for
+    instance), the maximum over all blocks bounds the system without a global matrix.
 
     Parameters
     ----------
@@ -123,6 +124,6 @@ def rigid_stiffness(
 def mass_factor(stiffness: Array, mass: Array, dt: float, local: float = 0.0) -> Array:
     """Factor by which each mode's mass grows so that its own stiffness does not limit the step, ``(nd,)``.
 
-    M* = M + β (Δt² / 4) K with β = 1.2 (1 + α): one for rigid modes, and next to one for modes slow enough.
+    M* = M + β (Δt² / 4) K with β = 1.2 (1 + α): one for rigid modes, and close to one for sufficiently slow modes.
     """
     return 1 + 0.3 * (1 + local) * dt**2 * stiffness / mass

@@ -1,8 +1,8 @@
-"""The update of a step: velocities and motions from forces, with damping; of modes alone, or of some together.
+"""The update of a step: velocities and motions from forces, with damping, for uncoupled or coupled modes.
 
-Local damping α resists every mode by α times the force on it (Cundall 1987). That comes to rest soonest, and drags on
-what drifts while it shakes: a wall may creep under it that would fall. Combined damping resists by the same only while
-that force changes against the velocity, as in a vibration it does all the time (Itasca), and lets drift what drifts.
+Local damping α resists every mode by α times the force on it (Cundall 1987). Walls come to rest soonest with it, but it
+slows down drift with superposed vibration: a wall may creep under it that would fall. Combined damping resists by as
+much, but only while that force changes against the velocity, as it always does in a vibration (Itasca), and not drift.
 """
 
 from typing import Any, Literal, TypeAlias
@@ -18,48 +18,47 @@ from .system import BlockSystem, Kernel
 kernel, inlined = compiled.kernel, compiled.inlined
 
 Modes: TypeAlias = tuple[Array, Array, Array]
-"""Stiffness [N/m], viscosity [N s/m] and one over the mass [1/kg] of each mode, ``(nd,)``; the last zero where held."""
+"""Stiffness [N/m], viscosity [N s/m] and inverse mass [1/kg] of each mode, ``(nd,)``; the last is zero if held."""
 
 StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
 """Motion, velocity, history, damped and unbalanced of a `State`, which the steps write to."""
 
-ROW = 8
-"""Numbers that rows of M⁻¹ below are filled up to a multiple of with nothing, for registers take so many at once."""
+ROW_MULTIPLE = 8
+"""Rows of M⁻¹ below are padded with zeros to a multiple of this number of entries, as many as registers hold."""
 
 Coupled: TypeAlias = tuple[Unsigned, Array, Array, Array, Array, Array, Array, Array, Array, Array]
-"""Modes with inertia in common ``(n,)``; M⁻¹ of them row by row [1/kg] and their own masses [kg], as long as a row;
-their accelerations of the step before, which steps write to, and six buffers."""
+"""Coupled modes ``(n,)``; rows of their M⁻¹ [1/kg] and their own masses [kg], as long as a row; their accelerations of
+the step before, which steps write to, and six buffers."""
 
 
 Clustered: TypeAlias = tuple[Any, ...]
 """All but the last of `Clusters`, three motions of clusters ``(nc, 3)`` and 1 / (1 + β); masses of the modes [kg], zero
-where held, and three accelerations, ``(nd,)`` each: without damping, of their own masses, and in their clusters."""
+where held, and three accelerations, ``(nd,)`` each: undamped, of their own masses, and in their clusters."""
 
 Damping: TypeAlias = Literal["local", "combined"]
-"""How modes with masses of their own are damped; those with inertia in common are by combined damping, and bodies in
-clusters by local damping."""
+"""Damping of uncoupled modes; coupled modes always have combined damping, and bodies in clusters local damping."""
 
 
 def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any, ...]]:
-    """The update of a system, and its memory: what it takes and writes to besides modes and state."""
+    """The update of a system, and its memory: what it uses and writes to apart from modes and state."""
     if len(system.clusters.cluster):
         return update_clusters, _memory_of(system.clusters, system.mass)
     freedom, inertia = system.coupling
     if not len(freedom):
-        # A memory of one type for both, of which the former makes no use: the loop over steps is compiled once.
+        # Local damping does not use the memory, but one type for both means that the loop over steps is compiled once.
         return update if damping == "local" else update_combined, (np.zeros(len(system.mass)),)
     n = len(freedom)
-    rows = -(-n // ROW) * ROW
+    rows = -(-n // ROW_MULTIPLE) * ROW_MULTIPLE
     mobility, mass = np.zeros((rows, rows)), np.zeros(rows)
     mass[:n] = system.mass[freedom]
     mobility[:n, :n] = np.linalg.inv(np.diag(mass[:n]) + inertia)
     buffers = np.zeros((7, rows))
-    modes = freedom.astype(np.uint64)  # an index that may be negative is asked about
+    modes = freedom.astype(np.uint64)  # signed indices would be checked for being negative
     return update_coupled, (modes, mobility.ravel(), mass, *buffers)
 
 
 def _memory_of(clusters: Clusters, mass: Array) -> Clustered:
-    """Memory of the update of bodies in clusters, of modes of some masses ``(nd,)`` [kg]."""
+    """Memory of the update of bodies in clusters, for modes with masses ``(nd,)`` [kg]."""
     *arrays, more = clusters
     return (
         *arrays,
@@ -71,7 +70,7 @@ def _memory_of(clusters: Clusters, mass: Array) -> Clustered:
 
 
 def _alone(combined: bool) -> Any:
-    """Compile the update of modes by their own masses, `combined` or by local damping."""
+    """Compile the update of uncoupled modes, with combined or local damping."""
 
     @kernel
     def alone(modes: Modes, memory: Any, state: StateArrays, local: float, dt: float) -> None:
@@ -103,9 +102,9 @@ update, update_combined = _alone(combined=False), _alone(combined=True)
 
 @kernel
 def _multiply(matrix: Array, factor: Array, out: Array) -> None:
-    """Product with a symmetric matrix ``(n²,)``, n a multiple of four: vector registers of any width do the same.
+    """Product with a symmetric matrix ``(n²,)``, n a multiple of four: the same result at any vector register width.
 
-    Four rows at once, for sums are read and written as often as there are turns.
+    It takes four rows at once, because sums are read and written once per pass.
     """
     n, k, four = np.uint64(out.size), np.uint64(0), np.uint64(4)
     out[:] = 0.0
@@ -123,10 +122,10 @@ _update_here = inlined(update.py_func)  # a call takes longer than the update of
 
 @kernel
 def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: float, dt: float) -> None:
-    """`update` where some modes have inertia in common, which combined damping resists.
+    """`update` if some modes are coupled by inertia; these have combined damping.
 
-    It is α of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping. It takes energy from each
-    mode, and makes a at most 1 + α times as large: 0 ≤ M⁻¹ m M⁻¹ ≤ M⁻¹.
+    The damping is α times the force m a that accelerates a mode's own mass m, with a = M⁻¹ f without damping. It takes
+    energy from each mode, and makes a at most 1 + α times as large: 0 ≤ M⁻¹ m M⁻¹ ≤ M⁻¹.
     """
     freedom, mobility, mass, last, before, place, spent, damping, force, free = coupling
     motion, velocity, _, damped, unbalanced = state
@@ -134,7 +133,7 @@ def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: f
         i = freedom[k]
         before[k], place[k], spent[k] = velocity[i], motion[i], damped[i]
     _update_here(modes, coupling, state, local, dt)
-    for k in range(freedom.size):  # these go on together, from where they were
+    for k in range(freedom.size):  # coupled modes are integrated again, together, from their old state
         force[k] = unbalanced[freedom[k]]
     _multiply(mobility, force, free)
     for k in range(force.size):
@@ -157,17 +156,17 @@ def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: f
 
 @inlined
 def _damped(pace: float, drift: float, local: float) -> float:
-    """An acceleration less what local damping takes of it against a velocity."""
+    """An acceleration reduced by local damping against a velocity."""
     sense = (1.0 if drift > 0.0 else 0.0) - (1.0 if drift < 0.0 else 0.0)
     return pace - local * abs(pace) * sense
 
 
 @kernel
 def update_clusters(modes: Modes, memory: Clustered, state: StateArrays, local: float, dt: float) -> None:
-    """`update` of bodies in clusters: local damping resists the clusters, and what bodies do beside them.
+    """`update` of bodies in clusters: local damping acts on the clusters, and on the relative motion of their bodies.
 
-    A body that is resisted by α times the force on it would be dragged on by what its cluster shakes with, and its
-    share of that is 1 + β times as large as what accelerates it.
+    If a body were resisted by α times the force on it, the vibration of its cluster would slow down its drift, and its
+    share of that force is 1 + β times as large as the one that accelerates it.
     """
     stiffness, viscosity, mobility = modes
     motion, velocity, _, damped, force = state
@@ -179,7 +178,7 @@ def update_clusters(modes: Modes, memory: Clustered, state: StateArrays, local: 
         pace[i] = free[i] = _damped(undamped[i], velocity[i], local)
     sum_up(freedom, cluster, arm, part, undamped, together)
     sum_up(freedom, cluster, arm, part, velocity, moving)
-    excess[:] = 0.0  # what damping beside the clusters must not do to them
+    excess[:] = 0.0  # effect of the damping of relative motion on the clusters, to be removed
     for k in range(cluster.size):
         c, x, y = cluster[k], arm[k, 0], arm[k, 1]
         i, j, r = freedom[k, 0], freedom[k, 1], freedom[k, 2]

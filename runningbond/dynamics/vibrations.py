@@ -13,7 +13,7 @@ from .ties import STIFFNESS
 def stiffness_matrix(system: BlockSystem, springs: Array, taut: Mask) -> csr_array:
     """Stiffness ``(nd, nd)`` [N/m] of the bodies, of springs at joint points ``(2, np)`` [Pa/m] and of `taut` ties.
 
-    Rows are read off the kernels, mode by mode.
+    The kernels yield its rows, mode by mode.
     """
     interface, ties, unit, rows = system.interface, system.ties, np.zeros(len(system.mass)), []
     for mode in range(len(unit)):
@@ -28,7 +28,7 @@ def stiffness_matrix(system: BlockSystem, springs: Array, taut: Mask) -> csr_arr
 
 
 def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
-    """Stiffness with all joints closed and no ties, of the modes that move, ``(n, n)`` [N/m]; their masses ``(n,)``."""
+    """Stiffness with all joints closed and no ties, of the moving modes, ``(n, n)`` [N/m]; their masses ``(n,)``."""
     law, moving = system.interface.law, np.flatnonzero(np.isfinite(system.mass))
     springs = np.array([law.normal_stiffness, law.shear_stiffness])
     stiffness = stiffness_matrix(system, springs, np.zeros(len(system.ties), dtype=np.bool_))
@@ -36,7 +36,7 @@ def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
 
 
 def vibrations(system: BlockSystem) -> tuple[Array, Array]:
-    """Frequencies ω [1/s] of that in ascending order, ``(n,)``, and their shapes, mass-normalised ``(nd, n)``."""
+    """Natural frequencies ω [1/s] with that stiffness, ascending, ``(n,)``; mass-normalised mode shapes ``(nd, n)``."""
     stiffness, mass = elastic_stiffness(system)
     root = 1 / np.sqrt(mass)
     square, vectors = eigh(stiffness * root[:, None] * root)

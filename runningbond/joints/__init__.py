@@ -1,4 +1,4 @@
-"""Joint points and the Mohr–Coulomb joint: the one place where its signs are written down."""
+"""Joint points and the Mohr–Coulomb joint: the only place that defines its signs."""
 
 from .law import KernelLaw, Law
 from .mohr_coulomb import PointStrength, point_strength

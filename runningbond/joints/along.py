@@ -1,11 +1,11 @@
-"""Joint points between the two ends of a joint: jumps between the ends' linearly, tractions handed back to the ends.
+"""Joint points between the two ends of a joint: jumps are interpolated linearly, tractions are lumped at the ends.
 
-Joints that crush or close answer to pressures all along. With shares ξ_p of the way from the first end to the second
-and weights w_p that add up to 1, the points of a joint of area A have
+Joints that crush or close respond to pressures along their length. With shares ξ_p of the way from the first end to the
+second and weights w_p that add up to 1, the points of a joint of area A have
 
     δ_p = (1 − ξ_p) δ_1 + ξ_p δ_2,    A_1 t_1 = A Σ w_p (1 − ξ_p) t_p,    A_2 t_2 = A Σ w_p ξ_p t_p,
 
-and do the work of the ends. A kinematics of ends becomes one of points by `gather_along` and `scatter_along`.
+so that points and ends do the same work. `gather_along` and `scatter_along` extend a kinematics of ends to points.
 """
 
 from collections.abc import Callable
@@ -21,16 +21,16 @@ from .points import Rule
 
 
 class Along(NamedTuple):
-    """What `gather_along` and `scatter_along` share: the ends' kinematics, and points between ends.
+    """Geometry for `gather_along` and `scatter_along`: the kinematics of ends, and points between ends.
 
     Point p of joint j is number ``p n + j`` of the m n points of n joints.
     """
 
     ends: Any  # geometry of the kinematics of the ends
-    pairs: Unsigned  # (n, 2) numbers of each joint's two ends; twice the same for an end that is alone
-    share: Array  # (m,) way of each point from the first end to the second
-    weight: Array  # (m,) part of the joint's area that each point stands for
-    scale: Array  # (n, 2) area of the joint in those of its ends
+    pairs: Unsigned  # (n, 2) numbers of each joint's two ends; the same number twice for a single end
+    share: Array  # (m,) position of each point, from 0 at the first end to 1 at the second
+    weight: Array  # (m,) part of the joint's area that belongs to each point
+    scale: Array  # (n, 2) area of the joint divided by the areas of its ends
     # (ne,) buffers of the ends' jumps and tractions
     opening: Array
     slip: Array
@@ -39,19 +39,19 @@ class Along(NamedTuple):
 
 
 def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Array]:
-    """Lay a rule between pairs ``(n, 2)`` of ends of areas ``(ne,)`` [m²].
+    """Place the points of a rule between pairs ``(n, 2)`` of ends of areas ``(ne,)`` [m²].
 
-    A pair of one end twice is an end alone, and stands for what the first point does: a corner that rolls from a side
-    of which it was one end onto another one would be stiffer at once by many times, and thrown off.
+    A pair of equal numbers is a single end, with only the area of the first point: otherwise a corner that rolls from
+    one side, where it was one of two ends, onto another would suddenly be many times stiffer, and be thrown off.
 
     Returns
     -------
     Along
-        Geometry of the points; that of the ends is kept as it is.
+        Geometry of the points, which includes that of the ends unchanged.
     (m n,) float
-        Area that each point stands for [m²].
+        Area of each point [m²].
     """
-    weight, pairs = rule.weights / 2, np.ascontiguousarray(pairs)  # of one layout, for which kernels are compiled
+    weight, pairs = rule.weights / 2, np.ascontiguousarray(pairs)  # the memory layout that kernels are compiled for
     whole = area[pairs].sum(axis=1) * np.where(pairs[:, 0] == pairs[:, 1], weight[0], 1.0)
     buffers = (np.zeros(len(area)) for _ in range(4))
     scale = whole[:, None] / area[pairs]
@@ -61,7 +61,7 @@ def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Ar
 
 @kernel
 def to_points(ends: Array, pairs: Unsigned, share: Array, points: Array) -> None:
-    """Write jumps of points ``(m n,)`` between those of ends ``(ne,)``."""
+    """Write jumps of points ``(m n,)``, interpolated between those of ends ``(ne,)``."""
     n = pairs.shape[0]
     for j in range(n):
         first = ends[pairs[j, 0]]
@@ -72,7 +72,7 @@ def to_points(ends: Array, pairs: Unsigned, share: Array, points: Array) -> None
 
 @kernel
 def to_ends(points: Array, pairs: Unsigned, share: Array, weight: Array, scale: Array, ends: Array) -> None:
-    """Write tractions of ends ``(ne,)`` that do the work of those of points ``(m n,)``."""
+    """Write tractions of ends ``(ne,)`` that do the same work as those of points ``(m n,)``."""
     n = pairs.shape[0]
     ends[:] = 0.0
     for j in range(n):
@@ -87,7 +87,7 @@ def to_ends(points: Array, pairs: Unsigned, share: Array, weight: Array, scale: 
 
 @cache
 def gather_along(gather: Callable[..., Any]) -> Any:
-    """The kernel ``gather(motion, geometry, opening, slip)`` of points between ends, from that of the ends."""
+    """Return the kernel ``gather(motion, geometry, opening, slip)`` of points between ends, given that of the ends."""
 
     @kernel
     def gather_points(motion: Array, geometry: Any, opening: Array, slip: Array) -> None:
@@ -101,7 +101,7 @@ def gather_along(gather: Callable[..., Any]) -> Any:
 
 @cache
 def scatter_along(scatter: Callable[..., Any]) -> Any:
-    """The kernel ``scatter(normal, tangential, geometry, force)`` of points between ends, from that of the ends."""
+    """Return the kernel ``scatter(normal, tangential, geometry, force)`` of points between ends, given that of ends."""
 
     @kernel
     def scatter_points(normal: Array, tangential: Array, geometry: Any, force: Array) -> None:

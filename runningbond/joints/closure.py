@@ -1,9 +1,9 @@
-"""Closure of joints: the normal stiffness grows with the pressure on it, elastically.
+"""Elastic closure of joints: the normal stiffness grows with the pressure.
 
     dp/dc = k_n + g p  up to k_∞,    p = (k_n / g) (exp(g c) − 1),    stored (p − k_n c) / g
 
 with c the closure (Evans, Kohl, Hopkirk & Rybach 1992; the hyperbola of Bandis, Lumsden & Barton 1983 fits the same
-tests). From p* = (k_∞ − k_n) / g on, at c* = ln(k_∞ / k_n) / g, the stiffness is k_∞.
+tests). Above p* = (k_∞ − k_n) / g, reached at c* = ln(k_∞ / k_n) / g, the stiffness is constant at k_∞.
 """
 
 import math
@@ -17,11 +17,11 @@ from .compiled import kernel
 from .stiffness import joint_stiffness, stiffest
 
 Curve: TypeAlias = tuple[float, float, float, float, float]
-"""k_n [Pa/m], g [1/m], p* [Pa], c* [m] and k_∞ [Pa/m]; p* = c* = 0, and any g, of a joint of constant stiffness."""
+"""k_n [Pa/m], g [1/m], p* [Pa], c* [m] and k_∞ [Pa/m]; p* = c* = 0, and any g, for a joint of constant stiffness."""
 
 
 def closure_curve(material: JointMaterial) -> Curve:
-    """The curve of a material."""
+    """Closure curve of a material."""
     first, last = joint_stiffness(material).normal, stiffest(material)
     growth = 1.0 if material.closure is None else material.closure.growth
     return first, growth, (last - first) / growth, math.log(last / first) / growth, last
@@ -47,7 +47,7 @@ def closure_at(pressure: float, curve: Curve) -> float:
 
 @kernel
 def stored_at(pressure: float, curve: Curve) -> float:
-    """Energy [J/m²] that a joint under a pressure [Pa], not negative, gives back."""
+    """Recoverable energy [J/m²] of a joint under a pressure [Pa], not negative."""
     k_n, growth, last, _, largest = curve
     below = np.minimum(pressure, last)
     beyond = pressure - below

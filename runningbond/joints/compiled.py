@@ -1,8 +1,8 @@
-"""Compiled kernels: numba, kept on disk for as long as the code they came from.
+"""Compiled kernels: numba, with a cache on disk that is valid for as long as the source code is unchanged.
 
-Numba knows a kernel by the file it stands in and would go on using it after a kernel that it calls, in another
-file, has changed. So the cache lies in a folder named after the digest of every file that kernels stand in, and one
-suite installed twice, or anew in another place, compiles once.
+Numba identifies a kernel by its source file, and would keep using it after a change of a kernel that it calls in
+another file. The cache therefore lies in a folder named after the digest of every file with kernels, and a package that
+is installed twice, or again in another place, compiles only once.
 """
 
 import hashlib
@@ -25,25 +25,25 @@ from numpy.typing import NDArray
 
 from runningbond.scene.folder_lock import locked
 
-KEPT = 4
-"""Folders of kernels that are kept beside a new one: those of other versions, and of the code before a change."""
+KEPT_FOLDERS = 4
+"""Number of kernel folders kept beside a new one: those of other versions, and of the code before a change."""
 
-_ROOMS = ("runningbond/joints", "runningbond/contacts", "runningbond/dynamics", "dem", "fem_interface")
+_KERNEL_FOLDERS = ("runningbond/joints", "runningbond/contacts", "runningbond/dynamics", "dem", "fem_interface")
 
 
 @cache
 def _digest() -> str:
-    """Digest of all of the package's own kernels."""
+    """Digest of all source files with the package's own kernels."""
     root = Path(__file__).parents[2]
     digest = hashlib.sha256(numba.__version__.encode())
-    for room in _ROOMS:
+    for room in _KERNEL_FOLDERS:
         for source in sorted((root / room).glob("*.py")):
             digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 
 def _cache_folder() -> str:
-    """Folder of the kernels; empty for a user who has no home, and whose kernels are not kept."""
+    """Folder of the kernels; empty for a user without a home folder, whose kernels are not kept."""
     if "NUMBA_CACHE_DIR" in os.environ:
         return os.environ["NUMBA_CACHE_DIR"]
     with suppress(RuntimeError):
@@ -56,44 +56,44 @@ def _cache_folder() -> str:
 
 
 def _forget_old(folder: Path) -> None:
-    """Delete all but the latest of the folders beside one that is new; whoever still uses another compiles again."""
+    """Delete all but the latest of the folders beside a new one; a process that still uses another compiles again."""
     with suppress(OSError):
         others = folder.parent.glob("[0-9a-f]" * len(folder.name))
-        for old in sorted(others, key=lambda other: other.stat().st_mtime)[:-KEPT]:
+        for old in sorted(others, key=lambda other: other.stat().st_mtime)[:-KEPT_FOLDERS]:
             shutil.rmtree(old, ignore_errors=True)
 
 
 FOLDER = _cache_folder()
-"""Folder of the kernels; a user's own, which `kernel` has not compiled, are kept where Numba keeps them."""
+"""Folder of the kernels; a user's kernels that were not compiled by `kernel` are kept where Numba keeps them."""
 
 
 def _is_own(module: str) -> bool:
-    """Whether a module is one of the package's own that kernels stand in."""
-    return f"{module}.".startswith(tuple(room.replace("/", ".") + "." for room in _ROOMS))
+    """Whether a module is one of the package's own modules with kernels."""
+    return f"{module}.".startswith(tuple(room.replace("/", ".") + "." for room in _KERNEL_FOLDERS))
 
 
 class PackageLocator(_CacheLocator):  # type: ignore[misc]
-    """Where one of the package's own kernels is kept: a place that does not tell where the package is installed."""
+    """Cache location of the package's own kernels, which does not depend on where the package is installed."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._folder = Path(FOLDER) / function.__module__.rpartition(".")[0]
         self._line = function.__code__.co_firstlineno
 
     def get_cache_path(self) -> str:
-        """Folder of the kernels of a room."""
+        """Folder of the kernels of a subpackage."""
         return str(self._folder)
 
     def get_source_stamp(self) -> str:
-        """What tells whether the source is the one that was compiled."""
+        """Stamp that shows whether the source is the one that was compiled."""
         return _digest()
 
     def get_disambiguator(self) -> str:
-        """What tells kernels of one name in one file from each other."""
+        """Text that distinguishes kernels of one name in one file."""
         return str(self._line)
 
     @classmethod
     def from_function(cls, py_func: Callable[..., Any], _: str) -> "PackageLocator | None":
-        """The place of a kernel; None for one of a user's own, or where none is."""
+        """Location of a kernel; None for a user's own kernel, or without a cache folder."""
         if not FOLDER or not _is_own(py_func.__module__):
             return None
         locator = cls(py_func)
@@ -104,14 +104,14 @@ class PackageLocator(_CacheLocator):  # type: ignore[misc]
 
 
 class UserLocator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]
-    """Where a kernel of a user's own is kept, a law or what is closed over one: by the file that it stands in."""
+    """Cache location of a user's kernel, a law or a closure over one, by its source file."""
 
     def __init__(self, function: Callable[..., Any], file: str) -> None:
         self._py_file, self._lineno = file, function.__code__.co_firstlineno
         self._folder = Path(FOLDER) / self.get_suitable_cache_subpath(file)
 
     def get_cache_path(self) -> str:
-        """Folder of the kernels of a folder of files."""
+        """Folder of the kernels of a folder of source files."""
         return str(self._folder)
 
 
@@ -120,18 +120,18 @@ class _Kept(CompileResultCacheImpl):  # type: ignore[misc]
 
 
 class SharedCache(FunctionCache):  # type: ignore[misc]
-    """Numba's cache of one kernel, fit to be shared by the processes of a campaign.
+    """Numba's cache of one kernel, made safe to share between the processes of a campaign.
 
     - Numba takes the number of a new file from an index that another process may be about to change, so that one
-      signature may find the code of another there. Here one process saves at a time.
-    - Numba knows a kernel that is closed over other kernels, as what interpolates along joints is, by names that
-      these have in one process only, and never finds it again. Here it is known by what they are called in their
-      source; those of a user's own, which the name of the folder does not tell apart, by what they are made of too.
-    - Numba numbers functions process by process, and two of one source, closed over different values in different
-      processes, may come by one number, and so one symbol: a third process that loads both would go by the first it
-      met in place of the other. Here what a kernel is known by is part of its symbols.
-    - A cache that is damaged, or on a disk that takes no more, costs a compilation and not the answer. Numba would
-      forget all that is kept of a kernel, for all laws, where one of them can not be read any more.
+      signature may find the code of another. Here only one process saves at a time.
+    - Numba identifies a kernel with other kernels in its closure, such as the interpolation along joints, by names
+      that hold in one process only, and never finds it again. Here it is identified by their names in the source; for
+      kernels of a user, which the name of the folder does not distinguish, also by their code.
+    - Numba numbers functions process by process. Two functions of one source, with different values in their closures
+      and compiled in different processes, may get the same number and so the same symbol: a third process that loads
+      both would run the first one in place of the other. Here the kernel's identity is part of its symbols.
+    - A cache that is damaged, or on a full disk, costs a compilation and not the answer. If one entry can not be read,
+      Numba would discard all that is kept of a kernel, for all laws.
     """
 
     _impl_class = _Kept
@@ -140,11 +140,11 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
         return sig, codegen.magic_tuple(), identity(self._py_func), _digest()
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Give the compiled kernel for a signature, or None; what is compiled next has symbols of its own."""
+        """Return the compiled kernel for a signature, or None; sets the symbols of a compilation that follows."""
         self._py_func.__qualname__ = symbol(self._py_func)
         try:
             return super().load_overload(sig, target_context)
-        except Exception:  # whatever unpickling half a file raises, or a law whose module is there no more
+        except Exception:  # e.g. unpickling half a file, or a law whose module no longer exists
             self._forget_a_damaged_index()
             return None
 
@@ -156,7 +156,7 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
                 self.flush()
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled kernel."""
+        """Save a compiled kernel."""
         with suppress(OSError):
             self._impl.locator.ensure_cache_path()
             with locked(Path(self.cache_path)):
@@ -164,9 +164,9 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
 
 
 def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
-    """What a function is called in its source, and what it is closed over; of a foreign one, its code as well.
+    """Identity of a function: its name in the source and its closure; for a user's function, also its code.
 
-    The same in every process, as long as the function does the same. `callers` are functions that are being named.
+    It is the same in every process, as long as the function does the same. `callers` are functions being identified.
     """
     code = function.__code__
     used = [cell.cell_contents for cell in function.__closure__ or ()]
@@ -185,7 +185,7 @@ def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
 
 
 def identity_of(given: Any) -> tuple[Any, ...]:
-    """What something that can be called, or None, is known by: functions, classes, their objects, partial calls."""
+    """Identity of a callable, or of None: functions, classes, their instances, partial calls."""
     if given is None:
         return ()
     if isinstance(given, partial):
@@ -196,7 +196,7 @@ def identity_of(given: Any) -> tuple[Any, ...]:
 
 
 def _of_class(given: type) -> tuple[Any, ...]:
-    """What a class is called in its source, and the functions written in it and in what it is derived from."""
+    """Identity of a class: its name in the source, and the functions defined in it and in its base classes."""
     known_by: list[Any] = [given.__module__, given.__qualname__]
     for kind in given.__mro__:
         for _, value in sorted(vars(kind).items()):
@@ -207,7 +207,7 @@ def _of_class(given: type) -> tuple[Any, ...]:
 
 
 def symbol(function: Any) -> str:
-    """Name that a function's symbols go by: that in its source, and a digest of what else it is known by, if any."""
+    """Name of a function in its symbols: that in its source, and a digest of the rest of its identity, if any."""
     module, name, *known_by = identity(function)
     if known_by == [repr(())]:
         return str(name)
@@ -217,7 +217,7 @@ def symbol(function: Any) -> str:
 def kernel(function: Callable[..., Any]) -> Any:
     """Decorator of every kernel: compiled on first use, serial, exact arithmetic (no fastmath)."""
     dispatcher: Any = numba.njit(error_model="numpy", nogil=True)(function)
-    with suppress(RuntimeError):  # where there is no folder to keep it in
+    with suppress(RuntimeError):  # raised if there is no folder to keep it in
         if not FOLDER:
             return dispatcher
         dispatcher._cache = SharedCache(function)
@@ -225,31 +225,31 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """Decorator of a long kernel that one other calls: part of that, and not compiled by itself as well."""
+    """Decorator of a long kernel with a single caller: it is inlined there, and not compiled on its own as well."""
     return numba.njit(error_model="numpy", nogil=True, inline="always")(function)
 
 
 @kernel
 def copy_into(target: NDArray[Any], source: NDArray[Any]) -> None:
-    """As ``target[:] = source``, which takes seconds to compile: it asks for memory where the two may overlap."""
+    """Copy as ``target[:] = source``, which takes seconds to compile, because it copes with arrays that overlap."""
     for i in range(target.size):
         target[i] = source[i]
 
 
 class Compilation(Listener):  # type: ignore[misc]
-    """Processor seconds spent on compiling kernels, also those that a kernel calls."""
+    """Processor seconds spent on compiling kernels, including the kernels that they call."""
 
     def __init__(self) -> None:
         self.seconds, self._depth, self._start = 0.0, 0, 0.0
 
     def on_start(self, event: Event) -> None:
-        """A kernel is compiled, perhaps for the sake of another."""
+        """Start the clock, unless the kernel is compiled as part of another one."""
         if not self._depth:
             self._start = time.process_time()
         self._depth += 1
 
     def on_end(self, event: Event) -> None:
-        """It is done."""
+        """Stop the clock after the outermost kernel."""
         self._depth -= 1
         if not self._depth:
             self.seconds += time.process_time() - self._start
@@ -257,6 +257,6 @@ class Compilation(Listener):  # type: ignore[misc]
 
 @contextmanager
 def compilation() -> Iterator[Compilation]:
-    """Take the time of what is compiled meanwhile: once on a machine, and none of what a model costs."""
+    """Measure the compilation time within the context: it is spent once a machine, and not part of a model's cost."""
     with install_listener("numba:compile", listener := Compilation()):
         yield listener

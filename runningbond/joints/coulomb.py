@@ -1,4 +1,4 @@
-"""Perfectly plastic joint points as a compiled kernel; `point_law` is the same law with its tangent."""
+"""Perfectly plastic joint points as a compiled kernel; `point_law` has the same law with its tangent."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ def coulomb_constants(material: JointMaterial) -> tuple[float, ...]:
 
 
 def stored_uncut(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
-    """Energy of springs whose tension is cut off but not forgotten, ``(np,)`` [J/m²]."""
+    """Recoverable energy of springs with a tension cut-off that closing retraces without loss, ``(np,)`` [J/m²]."""
     torn = np.maximum(0.0, opening - points.tension / points.normal_stiffness)
     elastic = normal**2 / (2 * points.normal_stiffness) + tangential**2 / (2 * points.shear_stiffness)
     return np.asarray(elastic + points.tension * torn)
@@ -33,8 +33,8 @@ def stored_uncut(points: KernelLaw, opening: Array, normal: Array, tangential: A
 
 @kernel
 def shear_within(trial: float, drag: float, most: float) -> tuple[float, float]:
-    """Shear of a point's spring and of spring and dashpot [Pa], neither beyond a strength."""
-    # Minima are spelt out: so the loop that this stands in runs in vector registers.
+    """Shear of a point's spring, and of spring and dashpot together [Pa], both limited to a strength."""
+    # Minima are written as conditionals, so that the calling loop runs in vector registers.
     held = trial if trial < most else most
     held = held if held > -most else -most
     t = held + drag
@@ -44,18 +44,18 @@ def shear_within(trial: float, drag: float, most: float) -> tuple[float, float]:
 
 @kernel
 def work_of_slip(before: float, held: float, slid: float) -> float:
-    """Work [J/m²] of a slip [m] under the mean of a spring's shear before and after it, as central differences do it.
+    """Work [J/m²] of a slip [m] under the mean of a spring's shear before and after it, as in central differences.
 
-    Never less than nothing, where the shear turns round: friction takes energy, and the ledger misses what is cut off.
+    Negative work, when the shear reverses, is cut off because friction only dissipates; the ledger misses that part.
     """
     work = 0.5 * (before + held) * slid
     return work if work > 0.0 else 0.0
 
 
 def _coulomb(of_mean: bool) -> Any:
-    """The kernel; with viscous work of the mean of two steps' tractions, as central differences do it, or of the last.
+    """Return the kernel; its viscous work uses the mean traction of two steps, as central differences do, or the last.
 
-    The latter is several percent too large in an impact, and takes two rows less.
+    With the last traction, the work is several percent too large in an impact, but the history has two rows less.
     """
 
     @kernel
@@ -68,11 +68,11 @@ def _coulomb(of_mean: bool) -> Any:
         normal: Array,
         tangential: Array,
     ) -> None:
-        """Tractions of perfectly plastic points with a tension cut-off and without dilatancy, from their jumps.
+        """Compute tractions of perfectly plastic points, with tension cut-off and zero dilatancy, from their jumps.
 
-        Stiffness-proportional viscosity β acts on the jumps' rates: `viscosity` = β / Δt times their change over the
-        last step. It never lets a joint pull or slide beyond its strength, so it has no part in a mechanism, but takes
-        out the chatter of sliding contacts, on which local damping would otherwise drag.
+        Stiffness-proportional viscosity β acts on the rates of the jumps: `viscosity` = β / Δt multiplies their change
+        over the last step. It never lets a joint pull or slide beyond its strength, so it has no part in a mechanism,
+        but it removes the chatter of sliding contacts, on which local damping would otherwise act.
         """
         segments, constants = parameters
         spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
@@ -84,7 +84,7 @@ def _coulomb(of_mean: bool) -> Any:
             k_n, k_t, strength = constants[segment, 0], constants[segment, 1], constants[segment, 2]
             shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
             viscous_n, viscous_t = viscosity * k_n, viscosity * k_t
-            # Each array is read once and then written: see `shear_within`.
+            # Each array is read once and then written, for vector registers: see `shear_within`.
             for i in range(segments[segment], segments[np.uint64(segment + 1)]):
                 jump_n, jump_t = opening[i], slip[i]
                 change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]
@@ -123,4 +123,4 @@ IMPACTS = Law(
     stored_uncut,
     response=PointLaw,
 )
-"""Coulomb's law with the ledger that impacts need."""
+"""Coulomb's law with the energy ledger that impacts need."""

@@ -1,22 +1,22 @@
-"""Crushing of joints: a cap on pressures p and shear τ, hardening and softening with the work spent on it.
+"""Crushing of joints: a cap on pressure p and shear τ, which hardens and softens with the work spent on it.
 
     p² + C τ² ≤ σ_c(κ)²,    dκ = (p dδ_p + τ ds_p) / σ_c
 
-(Lourenço & Rots 1997, eq. 19, with C_nn = 1 and C_n = 0), the flow of plastic closure δ_p and slip s_p normal to it.
-κ [m] is so measured that ∫ σ_c dκ is the work spent on the cap whatever the mode; in pure compression it is δ_p. With
-f the strength,
+(Lourenço & Rots 1997, eq. 19, with C_nn = 1 and C_n = 0), with associated flow of plastic closure δ_p and slip s_p.
+κ [m] is defined such that ∫ σ_c dκ is the work spent on the cap in any mode; in pure compression it equals δ_p. With
+the strength f,
 
     κ < κ_p:  σ_c = f (1 + 2 (x (2 − x))^{1/2}) / 3,  x = κ / κ_p        κ ≥ κ_p:  σ_c = f exp(−(κ − κ_p) / κ_s)
 
-where κ_s spends what the peak leaves of the fracture energy, and is infinite without one. In tension, where the cap
-ends in τ = ± σ_c / C^{1/2}, it goes on at that shear.
+where κ_s makes the branch past the peak dissipate the rest of the fracture energy, and is infinite without one. The cap
+ends at zero pressure in τ = ± σ_c / C^{1/2}; in tension it continues at that shear.
 
-Return map. At the pressure p = z p', with ' for the trial, the closure is elastic but for δ_p = c' − c(p), and so
+Return mapping. At the pressure p = z p', with ' for the trial, the closure is elastic except for Δδ_p = c' − c(p), and
 
     μ = Δδ_p / p,    τ = min(|τ'| / (1 + C k_t μ), Coulomb's at p),    Δκ = μ (p² + C τ²)^{1/2}
 
-hold the flow, on the face of the cap and in its corner with the Coulomb cone alike. What is left is one equation for z
-between 0 and 1, the cap, whose excess grows with z: it is solved by false position (Illinois).
+satisfy the flow rule, both on the face of the cap and in its corner with the Coulomb cone. One equation remains for z
+between 0 and 1, that of the cap, whose excess grows with z: it is solved by false position (Illinois).
 """
 
 import math
@@ -29,17 +29,17 @@ from .compiled import kernel
 from .stiffness import joint_stiffness
 
 Cap: TypeAlias = tuple[float, float, float, float]
-"""f [Pa], C, κ_p [m] and 1 / κ_s [1/m]; f is infinite for a joint that never crushes."""
+"""f [Pa], C, κ_p [m] and 1 / κ_s [1/m]; f is infinite for a joint that does not crush."""
 
-RUIN = 1e-12
-"""Strength that is left in the end, in strengths: none, but a number."""
+RESIDUAL_STRENGTH = 1e-12
+"""Residual strength after crushing, relative to f: practically zero, but positive."""
 
-ITERATIONS = 100
-"""Most iterations of the return map, which takes about ten."""
+MAX_ITERATIONS = 100
+"""Largest number of iterations of the return mapping, which takes about ten."""
 
 
 def crushing_cap(material: JointMaterial) -> Cap:
-    """The cap of a material."""
+    """Cap of a material."""
     strength, peak, energy = material.compressive_strength, material.peak_closure, material.compressive_fracture_energy
     if strength is None:
         return math.inf, 0.0, 0.0, 0.0
@@ -48,7 +48,7 @@ def crushing_cap(material: JointMaterial) -> Cap:
 
 
 def breaks_suddenly(material: JointMaterial, curve: Curve) -> bool:
-    """Whether a joint softens faster in crushing than it unloads, and gives back more than its fracture energy."""
+    """Whether a joint softens faster in crushing than it unloads, and so releases more than its fracture energy."""
     strength, shear, _, rate = crushing_cap(material)
     if not rate:
         return False
@@ -58,17 +58,17 @@ def breaks_suddenly(material: JointMaterial, curve: Curve) -> bool:
 
 @kernel
 def strength_at(crushed: float, cap: Cap) -> float:
-    """σ_c [Pa] at some κ [m]."""
+    """Strength σ_c [Pa] at a κ [m]."""
     strength, _, peak, rate = cap
     if crushed < peak:
         x = crushed / peak
         return strength / 3.0 * (1.0 + 2.0 * math.sqrt(x * (2.0 - x)))
-    return strength if crushed * rate == 0.0 else strength * max(RUIN, math.exp((peak - crushed) * rate))
+    return strength if crushed * rate == 0.0 else strength * max(RESIDUAL_STRENGTH, math.exp((peak - crushed) * rate))
 
 
 @kernel
 def work_until(crushed: float, cap: Cap) -> float:
-    """∫ σ_c dκ [J/m²] up to some κ [m]."""
+    """Work ∫ σ_c dκ [J/m²] up to a κ [m]."""
     strength, _, peak, rate = cap
     work = 0.0
     if peak > 0.0:
@@ -110,14 +110,14 @@ def return_to_cap(
     curve: Curve,
     cap: Cap,
 ) -> tuple[float, float, float]:
-    """Return a trial that is beyond the cap to it, with its corner on the Coulomb cone.
+    """Return a trial state beyond the cap to the cap, or to its corner with the Coulomb cone.
 
     Parameters
     ----------
     trial
-        Pressure [Pa] and closure [m], zero for a joint that is open, and |τ| [Pa].
+        Pressure [Pa] and closure [m], both zero for an open joint, and |τ| [Pa].
     crushed
-        κ before [m].
+        κ before the step [m].
     k_t
         Shear stiffness [Pa/m].
     cone
@@ -126,7 +126,7 @@ def return_to_cap(
     Returns
     -------
     p, |τ|, μ
-        Pressure and shear [Pa], and μ [m/Pa]: p μ is the plastic closure and C |τ| μ the plastic slip of the cap.
+        Pressure and shear [Pa], and μ [m/Pa]: the step's plastic closure is p μ, its plastic slip on the cap C |τ| μ.
     """
     shear = cap[1]
     low, below = 0.0, -strength_at(crushed, cap)
@@ -136,7 +136,7 @@ def return_to_cap(
     if above <= 0.0:
         return p, t, 0.0
     side = 0
-    for _ in range(ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         z = (low * above - high * below) / (above - below)
         if not low < z < high:
             z = 0.5 * (low + high)

@@ -1,6 +1,6 @@
-"""Dry joint points that do not crush: those that `interface` leaves to loops which run in vector registers.
+"""Dry joint points that do not crush, which `interface` evaluates in loops that run in vector registers.
 
-Their pressure is that of `closure`, with expm1 as a series of x / 64 and six doublings, e^{2x} − 1 = y (y + 2).
+Their pressure is that of `closure`, with expm1 from a series in x / 64 and six doublings, e^{2x} − 1 = y (y + 2).
 """
 
 import math
@@ -16,39 +16,39 @@ from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
 from .softening import HISTORY, NEVER
 
 SLIPPED, SEAT, CRUSHED = (len(HISTORY) + k for k in (-1, 0, 1))
-"""Rows of `interface`'s history."""
+"""Rows in the history of `interface`."""
 
-LONGEST = 8.0
-"""Largest g c for which the series is exact to rounding: a stiffness that grows by a factor of 3000."""
+SERIES_LIMIT = 8.0
+"""Largest g c for which the series is exact up to rounding; there the stiffness has grown by a factor of 3000."""
 
 C2, C3, C4, C5, C6, C7, C8, C9, C10 = (1.0 / math.factorial(k) for k in range(2, 11))
 """Coefficients of the series of expm1."""
 
-PRESSED, JOLTED = 0.9, 0.1
-"""Shares of the cap that pressure and its viscosity may come to before a point is looked at by itself."""
+PRESSURE_SHARE, VISCOUS_SHARE = 0.9, 0.1
+"""Shares of the cap that elastic and viscous pressure may reach before points are left to `interface.any_points`."""
 
 
 @kernel
 def dry_within(of: Array, viscosity: float) -> tuple[float, float]:
-    """Closure and its change in a step [m] up to which points of some constants are dry and within their cap.
+    """Closure and its change in a step [m] up to which points with the constants `of` are dry and within their cap.
 
-    The first is negative where none are. Shear is Coulomb's, and so no more than tan φ times the pressure.
+    The closure is negative if these points are never so. Shear does not exceed Coulomb's tan φ times the pressure.
     """
     tension, shear, friction, last, growth, end, largest = of[2], of[3], of[4], of[7], of[10], of[12], of[13]
-    if tension > 0.0 or shear > 0.0 or last < NEVER or growth * end > LONGEST:
+    if tension > 0.0 or shear > 0.0 or last < NEVER or growth * end > SERIES_LIMIT:
         return -1.0, 0.0
     strength, cap_shear, peak = of[14], of[15], of[16]
     if strength == math.inf:
         return math.inf, math.inf
     pressed = (strength / 3.0 if peak > 0.0 else strength) / math.sqrt(1.0 + cap_shear * friction * friction)
     curve = (of[9], growth, of[11], end, largest)
-    jolt = JOLTED * pressed / (viscosity * largest) if viscosity > 0.0 else math.inf
-    return closure_at(PRESSED * pressed, curve), jolt
+    jolt = VISCOUS_SHARE * pressed / (viscosity * largest) if viscosity > 0.0 else math.inf
+    return closure_at(PRESSURE_SHARE * pressed, curve), jolt
 
 
 @kernel
 def is_beyond(rows: tuple[np.uint64, np.uint64], opening: Array, history: Array, bounds: tuple[float, float]) -> bool:
-    """Whether a point from one up to another is beyond `dry_within`, or was crushed before."""
+    """Whether any point in a range of rows is beyond the bounds of `dry_within`, or was crushed before."""
     before, seat, crushed = history[OPENING_BEFORE], history[SEAT], history[CRUSHED]
     closure, jolt = bounds
     found = 0
@@ -69,7 +69,7 @@ def dry_points(
     normal: Array,
     tangential: Array,
 ) -> None:
-    """Bring dry points from one up to another on, which are `dry_within`: as `interface.any_points` does."""
+    """Update a range of points within the bounds of `dry_within`, with the result of `interface.any_points`."""
     spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
     opening_before, slip_before, seat, slipped = (
         history[OPENING_BEFORE],
@@ -80,7 +80,7 @@ def dry_points(
     k_t, friction, flexibility = of[1], of[4], of[5]
     k_n, growth, end, largest = of[9], of[10], of[12], of[13]
     scale, unit, viscous_t = growth / 64.0, k_n / growth, viscosity * k_t
-    # As in `coulomb_kernel`: each array is read once and then written, and minima are spelt out.
+    # As in `coulomb_kernel`, each array is read once and then written, and minima are written as conditionals.
     for i in range(rows[0], rows[1]):
         jump_n, jump_t = opening[i], slip[i]
         change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]

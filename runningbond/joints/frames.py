@@ -1,4 +1,4 @@
-"""Histories of joint points whose jumps come to be told in another frame, along another block's side."""
+"""Change of frame in the histories of joint points, when jumps are measured along the other block's side."""
 
 from collections.abc import Callable
 from functools import cache
@@ -10,15 +10,15 @@ from .compiled import kernel
 from .law import OPENING_BEFORE, SLIP_BEFORE
 
 Frames: TypeAlias = tuple[Mask, int]
-"""Whether each contact's jumps are told along the side of block b, ``(nc,)``; and the row of the plastic slip in the
-history, −1 where the law has none."""
+"""Whether each contact's jumps are measured along the side of block b, ``(nc,)``; and the row of the plastic slip in
+the history, −1 if the law has none."""
 
 
 @kernel
 def retell(history: Array, plastic: int, point: int, opening: float, slip: float) -> None:
-    """Tell what a point has been through by jumps that are larger by `opening` and `slip` [m] from now on.
+    """Convert a point's history to jumps that are larger by `opening` and `slip` [m] from now on.
 
-    The change is no rate for the viscosity; nor does it shear the point, which bears what it bore.
+    Viscosity does not take the change for a rate, and the point keeps its shear traction.
     """
     history[OPENING_BEFORE, point] += opening
     history[SLIP_BEFORE, point] += slip
@@ -28,14 +28,14 @@ def retell(history: Array, plastic: int, point: int, opening: float, slip: float
 
 @kernel
 def keep_frames(geometry: Any, frames: Frames, history: Array) -> None:
-    """Leave the history ``(rows, np)`` as it is: jumps are always told in one frame."""
+    """Leave the history ``(rows, np)`` unchanged: jumps are always measured in the same frame."""
 
 
 @cache
 def reframe_along(turned: Callable[..., Any]) -> Any:
-    """The kernel ``reframe(geometry, frames, history)`` of points between ends (`along`).
+    """Return the kernel ``reframe(geometry, frames, history)`` of points between ends (`along`).
 
-    `turned(ends, k)` says by how much the jumps of end k are larger in the frame it has now, two lengths [m].
+    `turned(ends, k)` returns by how much the jumps of end k are larger in its present frame, two lengths [m].
     """
 
     @kernel

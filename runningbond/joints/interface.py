@@ -1,8 +1,8 @@
 """Joint points that may open, slide, crush and close: `softening` in tension and shear, with a cap and a closure.
 
-The joint sits where it was crushed to: with δ_p its plastic closure, what `softening` reads of the opening is read of
-δ + δ_p. Pressure is that of `closure`, shear Coulomb's without dilatancy, both within the cap of `crushing`. A
-material that neither crushes nor closes has the tractions of `softening`.
+The plastic closure δ_p shifts the opening at which a joint is closed: wherever `softening` uses δ, this law uses
+δ + δ_p. Pressure follows `closure`, shear Coulomb's law with zero dilatancy, both within the cap of `crushing`. For a
+material that neither crushes nor closes, the tractions are those of `softening`.
 """
 
 import math
@@ -32,34 +32,34 @@ from .softening import HISTORY as SOFTENING_HISTORY
 from .sound_points import are_sound, can_be_sound, sound_points
 
 HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, CRUSHING)
-"""Beside the rows of softening points: plastic closure δ_p and κ of the cap, both [m]."""
+"""History rows after those of softening points: plastic closure δ_p and κ of the cap, both [m]."""
 
-ROW = np.uint64(64)
-"""Points that are looked at together."""
+BATCH = np.uint64(64)
+"""Number of points that are checked and updated together."""
 
 CURVE = 9
-"""Number of the first constant of the closure's curve."""
+"""Index of the closure curve's first constant."""
 
 STIFFEST = CURVE + 4
 
 SOFTENS_CRUSHED = CURVE + 8
-"""Number of 1 / κ_s of the cap: zero where it stays as strong however far it is crushed."""
+"""Index of 1 / κ_s of the cap: zero for a cap that keeps its strength however far it is crushed."""
 
 
 def interface_constants(material: JointMaterial) -> tuple[float, ...]:
-    """Constants of `interface_kernel`: of softening, closure and crushing; whether that is sudden, and that curved."""
+    """Constants of `interface_kernel`: softening, closure, crushing; flags: sudden crushing, exponential softening."""
     curve, exponential = closure_curve(material), material.softening == "exponential"
     flags = float(breaks_suddenly(material, curve)), float(exponential)
     return *softening_constants(material), *curve, *crushing_cap(material), *flags
 
 
 def weakens(constants: Array) -> Mask:
-    """Whether materials of some constants ``(ns, n)`` lose strength, in fracture or in crushing."""
+    """Whether materials with constants ``(ns, n)`` lose strength, by fracture or by crushing."""
     return np.asarray(weakens_in_fracture(constants) | (constants[:, SOFTENS_CRUSHED] > 0))
 
 
 def curve_of(points: KernelLaw) -> tuple[Array, ...]:
-    """The closure's curve of each point, five times ``(np,)``."""
+    """Closure curve of each point, five arrays ``(np,)``."""
     return tuple(points.of_points(CURVE + k) for k in range(5))
 
 
@@ -70,7 +70,7 @@ def closed_under(points: KernelLaw, pressure: Array) -> tuple[Array, Array]:
 
 
 def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
-    """Energy of points that unload to where they sit in opening and along their curve in closure, ``(np,)`` [J/m²]."""
+    """Energy of points that unload to their seat in opening and along their curve in closure, ``(np,)`` [J/m²]."""
     curve = curve_of(points)
     closed = stored_at.py_func(np.maximum(0.0, -normal), curve)
     opened = np.maximum(0.0, normal) * np.maximum(0.0, opening) / 2
@@ -85,9 +85,9 @@ def snapped(
     curve: Curve,
     flexibility: float,
 ) -> float:
-    """All that is put into a point and not stored in a step [J/m²]: more than the cap spends, where it snaps.
+    """Energy [J/m²] put into a point in a step and not stored: more than the work of the cap if the point snaps.
 
-    From a closure [m] and a shear [Pa] to a pressure and a shear [Pa], by a change of both jumps [m].
+    `before` is closure [m] and shear [Pa], `after` pressure and shear [Pa], `change` that of both jumps [m].
     """
     p_before, (p, t) = pressure_at(before[0], curve), after
     put_in = 0.5 * ((before[1] + t) * change[1] - (p_before + p) * change[0])
@@ -107,13 +107,13 @@ def any_points(
     normal: Array,
     tangential: Array,
 ) -> None:
-    """Bring points from one up to another of a material on, whatever they do."""
+    """Update a range of points of one material, whatever state they are in."""
     spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
     opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
     damage, slipped, seat, crushed = history[DAMAGE], history[SLIPPED], history[SEAT], history[CRUSHED]
     k_t, tension, shear, friction, flexibility = of[1], of[2], of[3], of[4], of[5]
     first, last, per_slip = of[6], of[7], of[8]
-    is_strong = tension > 0.0 or shear > 0.0  # what is dry has nothing to lose
+    is_strong = tension > 0.0 or shear > 0.0  # a dry joint has no strength to lose
     curve = (of[9], of[10], of[11], of[12], of[13])
     cap = (of[14], of[15], of[16], of[17])
     crushes, cap_shear, sudden, exponential = of[14] < math.inf, of[15], of[18] > 0.0, of[19] > 0.0
@@ -171,7 +171,7 @@ def any_points(
                 limit = math.inf
         t = max(-most, min(most, held + viscosity * k_t * change_t))
         if crushes and min(0.0, n) ** 2 + cap_shear * t * t > limit * limit:
-            # Neither does viscosity press or shear beyond the cap.
+            # Viscous pressure and shear may not exceed the cap either.
             n = max(n, -max(pressure, math.sqrt(limit * limit - cap_shear * still * still)))
             if cap_shear > 0.0:
                 within = max(0.0, limit * limit - min(0.0, n) ** 2) / cap_shear
@@ -202,7 +202,7 @@ def interface_kernel(
 ) -> None:
     """Tractions of joint points from their jumps; see `coulomb_kernel` for the arguments.
 
-    Viscosity goes with the present stiffness, and does not act on what is being crushed.
+    Viscosity is proportional to the present stiffness, and does not act on points that are being crushed.
     """
     segments, constants = parameters
     for segment in range(constants.shape[0]):
@@ -210,7 +210,7 @@ def interface_kernel(
         first, last = segments[segment], segments[np.uint64(segment + 1)]
         bounds, strong = dry_within(of, viscosity), can_be_sound(of)
         while first < last:
-            rows = (first, min(first + ROW, last))
+            rows = (first, min(first + BATCH, last))
             if bounds[0] >= 0.0 and not is_beyond(rows, opening, history, bounds):
                 dry_points(rows, of, opening, slip, history, viscosity, normal, tangential)
             elif strong and are_sound(rows, of, opening, slip, history, viscosity):

@@ -1,6 +1,6 @@
 """A joint law as one object, and the law of all joint points of a wall.
 
-Kernels know tractions and jumps; the area that a point stands for is its weight, and they do not know it.
+Kernels work with tractions and jumps only; the area of a point is a weight that is applied outside them.
 """
 
 from collections.abc import Callable
@@ -15,61 +15,60 @@ from .mohr_coulomb import PointStrength, truncated_cone
 from .point_law import PointLaw
 
 COMMON_ROWS = ("work", "viscous work", "opening before", "slip before")
-"""Rows of the history that every law has: work spent on the joint and on its viscosity, both [J/m²], and the jumps of
-the last step [m]."""
+"""History rows of every law: work dissipated in the joint and in its viscosity, both [J/m²], and the jumps of the last
+step [m]."""
 
 FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
-"""Their numbers."""
+"""Numbers of the `COMMON_ROWS`."""
 
 PLASTIC_CLOSURE = "plastic closure"
-"""Row, in laws of joints that crush, of by how much less than touching a point closes [m].
+"""History row, in laws of joints that crush, of the overlap [m] at which a point closes.
 
-How far it has been crushed, and how far blocks overlapped where they have met since."""
+It is how far the point has been crushed, plus how far blocks overlapped if they met later."""
 
 CRUSHING = "crushed"
-"""Row, in laws of joints that crush, of κ of the cap [m]: above zero where a point has been crushed."""
+"""History row, in laws of joints that crush, of κ of the cap [m]: above zero once a point has been crushed."""
 
 Parameters: TypeAlias = tuple[Unsigned, Array]
 
 
 @dataclass(frozen=True)
 class Law:
-    """A law of joint points. Laws of one name are one law; the joints of a wall have one law.
+    """A law of joint points. Laws of the same name are the same law; the joints of a wall have one law.
 
     Parameters
     ----------
     name
-        What messages call it.
+        Name in messages.
     constants
-        ``constants(material)``: what the kernel needs to know of a material; k_n, k_t [Pa/m] and f_t [Pa] come first.
+        ``constants(material)``: the kernel's constants for a material; k_n, k_t [Pa/m] and f_t [Pa] come first.
     kernel
         ``kernel(opening, slip, parameters, history, viscosity, normal, tangential)``, compiled with
-        `runningbond.joints.compiled.kernel`: reads jumps ``(np,)`` [m] and the parameters, brings the history
-        ``(rows, np)`` up to date and writes tractions ``(np,)`` [Pa]; it returns nothing. Parameters are
-        `KernelLaw.segments` and `KernelLaw.constants`. `viscosity` times k is a dashpot's traction per change of a
-        jump over the last step.
+        `runningbond.joints.compiled.kernel`: reads jumps ``(np,)`` [m] and the parameters, updates the history
+        ``(rows, np)`` and writes tractions ``(np,)`` [Pa]; it returns nothing. Parameters are `KernelLaw.segments` and
+        `KernelLaw.constants`. `viscosity` times k is a dashpot's traction per change of a jump over the last step.
     history
-        Names of the rows of the history, `COMMON_ROWS` first. At finite displacements, where a contact is carried
-        from one side of a block to the next, a law needs a row ``"plastic slip"`` [m].
+        Names of the history rows, `COMMON_ROWS` first. At finite displacements, where a contact may pass from one side
+        of a block to the next, a law needs a row ``"plastic slip"`` [m].
     stored
-        ``stored(points, opening, normal, tangential)``: energy that points would give back, ``(np,)`` [J/m²]; the
-        opening counts from where they close (`PLASTIC_CLOSURE`).
+        ``stored(points, opening, normal, tangential)``: recoverable energy of points, ``(np,)`` [J/m²]; the opening is
+        measured from where they close (`PLASTIC_CLOSURE`).
     damage
-        The row that says how far points are broken, from 0 to 1; None for a law that knows no damage. Joints of a law
-        that does are evaluated all along, at nine points, those of another at their two ends.
+        History row of the damage, from 0 to 1; None for a law without damage. Joints of a law with damage are evaluated
+        along their length, at nine points, those of other laws at their two ends.
     cone
-        ``cone(material)``: tan φ, f_t [Pa] and shear at that tension [Pa] of the strength, which limit analysis reads.
+        ``cone(material)``: tan φ, f_t [Pa] and shear at that tension [Pa] of the strength, for limit analysis.
     response
         ``response(strength, normal_stiffness, shear_stiffness)``: the law with a tangent, a `PointLaw` or a subclass;
-        models that solve for rest refuse a law that has none.
+        static models refuse a law without one.
     stiffest
-        Number of the constant that is the largest normal stiffness [Pa/m], by which time steps go.
+        Index of the constant that is the largest normal stiffness [Pa/m], which determines time steps.
     closed
         ``closed(points, pressure)``: elastic closure ``(np,)`` [m] and tangent normal stiffness ``(np,)`` [Pa/m] under
-        a pressure [Pa], not negative, of a law whose points have a `PLASTIC_CLOSURE`; None for another, of k_n.
+        a pressure [Pa], not negative, for a law with a `PLASTIC_CLOSURE`; None for other laws, whose stiffness is k_n.
     weakens
-        ``weakens(constants)``: whether points of materials lose strength in what they do, ``(ns,)``, from the
-        materials' constants ``(ns, n_constants)``; None where all do of a law that knows damage, and none of another.
+        ``weakens(constants)``: whether points of materials may lose strength, ``(ns,)``, from the materials' constants
+        ``(ns, n_constants)``; None if all points do in a law with damage, and none in other laws.
     """
 
     name: str
@@ -92,7 +91,7 @@ class Law:
 
     @property
     def identity(self) -> tuple[Any, ...]:
-        """What tells the law from others, in every process the same: its names, and its functions' code."""
+        """Identity of the law, the same in every process: its names, and the code of its functions."""
         from .compiled import identity_of
 
         kernel = getattr(self.kernel, "py_func", self.kernel)
@@ -100,7 +99,7 @@ class Law:
         return self.name, self.history, self.damage, self.stiffest, *map(identity_of, functions)
 
     def row(self, name: str) -> int:
-        """Number of a row of the history; a law without it is refused by name."""
+        """Number of a history row; raises a `SceneError` that names the law if it has no such row."""
         if name not in self.history:
             raise SceneError("joint.law", f'"{self.name}" keeps no "{name}" in its history, which this model needs')
         return self.history.index(name)
@@ -108,14 +107,14 @@ class Law:
 
 @dataclass(frozen=True, eq=False)
 class KernelLaw:
-    """A law over the joint points of a wall, for the integrator.
+    """A law for all joint points of a wall, as the integrator uses it.
 
     Parameters
     ----------
     segments : (ns + 1,) uint64
-        First point of each row of points of one material, then their number.
+        First point of each run of points of one material, then the number of points.
     constants : (ns, n_constants) float
-        The law's constants of each of those materials.
+        The law's constants for the material of each run.
     """
 
     law: Law
@@ -129,16 +128,16 @@ class KernelLaw:
 
     @property
     def rows(self) -> int:
-        """Rows of the history."""
+        """Number of history rows."""
         return len(self.law.history)
 
     def energy(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
-        """Energy that points of some jumps and tractions would give back, ``(np,)`` [J/m²]."""
+        """Recoverable energy of points with given jumps and tractions, ``(np,)`` [J/m²]."""
         return self.law.stored(self, opening + self.plastic_closure(history), normal, tangential)
 
     @property
     def parameters(self) -> Parameters:
-        """What the kernel is called with."""
+        """Parameters that the kernel is called with."""
         return self.segments, self.constants
 
     @property
@@ -168,31 +167,31 @@ class KernelLaw:
 
     @property
     def can_break(self) -> bool:
-        """Whether any point loses strength in what it does, so that a load it has borne may be too much for it."""
+        """Whether any point may lose strength, so that it may fail under a load that it carried before."""
         weakens = self.law.weakens
         return self.law.damage is not None if weakens is None else bool(weakens(self.constants).any())
 
     def normal_tangent(self, pressure: Array) -> Array:
-        """Stiffness of closed points against more or less of a pressure ``(np,)`` [Pa], not negative; [Pa/m]."""
+        """Tangent normal stiffness [Pa/m] of closed points under a pressure ``(np,)`` [Pa], not negative."""
         return self.normal_stiffness if self.law.closed is None else self.law.closed(self, pressure)[1]
 
     def of_points(self, constant: int) -> Array:
-        """A constant of each point's material, ``(np,)``."""
+        """Constant of a given index for each point's material, ``(np,)``."""
         return np.repeat(self.constants[:, constant], np.diff(self.segments).astype(np.int64))
 
     def plastic_closure(self, history: Array) -> Array:
-        """By how much less than touching each point closes with a history ``(rows, np)`` [m]; zero without such a row.
+        """Overlap at which each point closes, for a history ``(rows, np)`` [m]; zero without such a row.
 
-        How far it has been crushed, and how far blocks overlapped where they have met since.
+        It is how far the point has been crushed, plus how far blocks overlapped if they met later.
         """
         known = PLASTIC_CLOSURE in self.law.history
         return history[self.law.row(PLASTIC_CLOSURE)].copy() if known else np.zeros(self.points)
 
     def crushed(self, history: Array) -> Array:
-        """How far each point has been crushed with a history ``(rows, np)`` [m]; zero for a law that knows none."""
+        """How far each point has been crushed, for a history ``(rows, np)`` [m]; zero for a law without crushing."""
         closure = self.plastic_closure(history)
         return np.where(history[self.law.row(CRUSHING)] > 0, closure, 0.0) if CRUSHING in self.law.history else closure
 
     def damage(self, history: Array) -> Array:
-        """Damage of each point with a history ``(rows, np)``; zero for a law that knows none."""
+        """Damage of each point, for a history ``(rows, np)``; zero for a law without damage."""
         return np.zeros(self.points) if self.law.damage is None else history[self.law.row(self.law.damage)].copy()

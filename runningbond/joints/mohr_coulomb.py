@@ -4,12 +4,11 @@ Per unit area, with σ the normal traction (tension positive) and τ the tangent
 
     |τ| ≤ c − σ tan φ,    σ ≤ f_t ≤ c / tan φ.
 
-Written from its vertex this truncated cone is the sum of a cone and a segment,
+Measured from its vertex, this truncated cone is the sum of a cone and a segment,
 
     σ = f_t − p,    |τ| ≤ s + p tan φ,    p ≥ 0,    s = c − f_t tan φ ≥ 0,
 
-which needs neither a division by tan φ nor one by c: dry (c = 0) and frictionless (tan φ = 0) joints are
-ordinary cases.
+which avoids divisions by tan φ and by c: dry (c = 0) and frictionless (tan φ = 0) joints are ordinary cases.
 """
 
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ from runningbond.scene import Array, JointMaterial
 
 @dataclass(frozen=True, eq=False)
 class PointStrength:
-    """Forces that joint points can carry.
+    """Strength of joint points, as the set of forces that they can carry.
 
     Parameters
     ----------
@@ -63,13 +62,13 @@ class PointStrength:
 def truncated_cone(material: JointMaterial) -> tuple[float, float, float]:
     """Friction tan φ, tension f_t [Pa] and shear s at that tension [Pa] of a material."""
     cohesion, friction, tension = material.cohesion, material.friction, material.tension
-    # The apex, rounded, may lie a little beyond the cone.
+    # After rounding, the apex may lie slightly beyond the cone.
     if friction * tension > cohesion:
         tension = cohesion / friction
     return friction, tension, max(0.0, cohesion - tension * friction)
 
 
 def point_strength(material: JointMaterial, area: Array) -> PointStrength:
-    """Strength of joint points of one material that each stand for an area ``(np,)`` [m²]."""
+    """Strength of joint points of one material with areas ``(np,)`` [m²]."""
     friction, tension, shear = truncated_cone(material)
     return PointStrength(np.full(len(area), friction), tension * area, shear * area)

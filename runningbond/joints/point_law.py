@@ -1,15 +1,15 @@
 """The joint's law at its points: elastic contact with Coulomb friction, forces and consistent tangent.
 
-With K = k A the stiffness of a point that stands for an area A, δ_n its opening, δ_t its slip and δ_t^p the
-plastic part of the slip, its only history,
+With the stiffness K = k A of a point of area A, its opening δ_n, its slip δ_t and the plastic slip δ_t^p, its only
+history variable,
 
-    N = min(K_n δ_n, T)                                   no memory: a crack closes where it opened      (1)
+    N = min(K_n δ_n, T)                                   no history: a crack closes where it opened     (1)
     S* = K_t (δ_t − δ_t^p)                                trial                                          (2)
     S = S* min(1, R / |S*|),   R = s + tan φ (T − N)      returned to the cone at constant N             (3)
-    δ_t^p ← δ_t − S / K_t                                 so that slip opens nothing: zero dilatancy     (4)
+    δ_t^p ← δ_t − S / K_t                                 slip causes no opening: zero dilatancy         (4)
 
 T and s are the point's tensile strength and the shear that it carries at that tension (`PointStrength`). In a
-dry joint T = s = 0, and a point that opens carries nothing at all.
+dry joint T = s = 0, and a point that opens carries no force.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from .mohr_coulomb import PointStrength
 
 @dataclass(frozen=True, eq=False)
 class PointResponse:
-    """What joint points answer to a jump.
+    """Response of joint points to a jump.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class PointResponse:
     plastic_slip : (np,) float
         Plastic slip after the jump [m].
     tangent : (np, 2, 2) float
-        Derivative of (N, S) by (opening, slip) [N/m]; not symmetric where a point slides under pressure.
+        Derivative of (N, S) with respect to (opening, slip) [N/m]; not symmetric if a point slides under pressure.
     """
 
     normal: Array
@@ -50,8 +50,8 @@ class PointLaw:
     shear_stiffness: Array
 
     def __call__(self, opening: Array, slip: Array, plastic_slip: Array) -> PointResponse:
-        """Answer to the jumps ``(np,)`` [m] of points with a given plastic slip ``(np,)`` [m]."""
-        from .point_kernel import respond  # limit analysis does without a compiler
+        """Response to jumps ``(np,)`` [m] of points with a given plastic slip ``(np,)`` [m]."""
+        from .point_kernel import respond  # imported here, as limit analysis needs no compiler
 
         forces, tangent = np.empty((3, len(opening))), np.empty((len(opening), 2, 2))
         strength = self.strength

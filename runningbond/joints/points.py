@@ -1,4 +1,4 @@
-"""Joint points: quadrature on the joints, and the local frame in which jumps and tractions are read.
+"""Joint points: quadrature on the joints, and the local frame in which jumps and tractions are measured.
 
 A joint separates block a from block b. Its normal n points from a to b, its tangent is t = (−n_y, n_x).
 The jump is u_b − u_a: opening is a positive normal jump, tension a positive normal traction.
@@ -26,8 +26,8 @@ class Rule:
 def lobatto(points: int = 2) -> Rule:
     """Gauss–Lobatto rule, whose end points are the joint's ends.
 
-    A rigid block can only rock exactly about its edge when a point lies there: two-point Gauss topples a
-    single block 42 % too early. Three points are Simpson's rule.
+    A rigid block rocks exactly about its edge only if a point lies there: two-point Gauss topples a single block 42 %
+    too early. Three points are Simpson's rule.
     """
     if points < 2:
         raise ValueError(f"points = {points}: a Lobatto rule has at least its two ends")
@@ -37,7 +37,7 @@ def lobatto(points: int = 2) -> Rule:
 
 
 def trapezoids(parts: int) -> Rule:
-    """Trapezoidal rule on equal parts; on one, the two ends."""
+    """Trapezoidal rule on equal parts; for one part, its points are the two ends."""
     weights = np.full(parts + 1, 2 / parts)
     weights[[0, -1]] /= 2
     return Rule(np.linspace(-1, 1, parts + 1), weights)
@@ -66,7 +66,7 @@ class JointPoints:
     normal, tangent : (np, 2) float
         Unit vectors; n points from a to b, t = (−n_y, n_x).
     area : (np,) float
-        Area each point stands for [m²]; over a joint they add up to length × thickness.
+        Area of each point [m²]; over a joint they add up to length × thickness.
     """
 
     joint: Indices
@@ -86,29 +86,29 @@ class JointPoints:
         return len(self.joint)
 
     def part(self, chosen: Indices) -> "JointPoints":
-        """Some of the points, or all in another order."""
+        """Subset of the points, or all in another order."""
         return JointPoints(**{column.name: getattr(self, column.name)[chosen] for column in fields(self)})
 
 
 def joint_points(
     joints: Joints, thickness: float | Array, rule: Rule | None = None, inset: float | Array = 0.0
 ) -> JointPoints:
-    """Lay a quadrature rule on every joint.
+    """Place the points of a quadrature rule on every joint.
 
     Parameters
     ----------
     thickness : float or (nj,) float
         Out-of-plane thickness [m].
     rule
-        Quadrature rule; two Lobatto points where none is given.
+        Quadrature rule; two Lobatto points by default.
     inset : float or (nj,) float
-        Distance [m] by which the rule's ends are moved in from the joint's ends, as rounded corners
-        would. The areas still add up to the whole joint.
+        Distance [m] of the rule's ends from the joint's ends, which represents rounded corners. The areas still add up
+        to the whole joint.
 
     Returns
     -------
     JointPoints
-        Points of joint 0 first, each joint's points in the sense of its tangent.
+        Points of joint 0 first, each joint's points in the direction of its tangent.
     """
     rule = rule or lobatto()
     too_far = joints.too_short_for(inset)

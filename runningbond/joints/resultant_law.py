@@ -1,12 +1,12 @@
-"""The joint's law on its resultants: the paper's Eq. 3 for normal force, shear and moment of a whole joint.
+"""The joint's law for resultants: the paper's Eq. 3 for normal force, shear and moment of a whole joint.
 
     f_n ≤ F_t,    |f_t| ≤ s + (F_t − f_n) tan φ,    |m| ≤ (F_t − f_n) l_c
 
-with F_t the joint's tensile strength and s the shear that it carries at that tension (`PointStrength` of its whole
-area; the paper has s = 0 because its F_t is the apex of the cone). l_c is how far from the joint's centre the
-normal force may act. For forces at the two ends of a joint that is exactly half its length. The paper (Sec. 3)
-calls it a distance from the *block's* centre, b/2 for a bed joint of length b/2, hence the whole length of the
-joint, which is unsafe: pass ``arm=length`` to get it.
+with the joint's tensile strength F_t and the shear s that it carries at that tension (`PointStrength` of its whole
+area; the paper has s = 0 because its F_t is the apex of the cone). l_c is the largest distance of the normal force from
+the joint's centre. For forces at the two ends of a joint it is exactly half the joint's length. The paper (Sec. 3)
+calls it a distance from the *block's* centre, b/2 for a bed joint of length b/2, hence the whole length of the joint,
+which is unsafe: pass ``arm=length`` to obtain it.
 """
 
 from dataclasses import dataclass
@@ -23,14 +23,15 @@ DETACHED, SLIDING, ROTATING = range(3)
 
 @dataclass(frozen=True, eq=False)
 class ResultantLaw:
-    """Joints that answer elastically to the jump at their centre, and what their actions must respect.
+    """Joints that respond elastically to the jump at their centre, and the limits of their actions.
 
     Parameters
     ----------
     strength
         Strength of the joints' whole areas.
     stiffness : (nj, 3) float
-        Normal [N/m], shear [N/m] and rotational stiffness [N m], of a uniform layer of length l k_n A l² / 12.
+        Normal [N/m], shear [N/m] and rotational stiffness [N m]; the latter is k_n A l² / 12 for a uniform layer of
+        length l.
     arm : (nj,) float
         Largest distance l_c of the normal force from the joint's centre [m].
     """
@@ -40,9 +41,9 @@ class ResultantLaw:
     arm: Array
 
     def excess(self, action: Array) -> Array:
-        """By how much actions ``(nj, 3)`` [N, N, N m] exceed Eq. 3, mode by mode ``(nj, 3)`` [N, N, N m].
+        """Excess of actions ``(nj, 3)`` [N, N, N m] over Eq. 3, mode by mode ``(nj, 3)`` [N, N, N m].
 
-        Past the tensile strength nothing is left of the two other limits.
+        Beyond the tensile strength, the limit of the shear is s, and that of the moment zero.
         """
         normal, shear, moment = action.T
         pressure = self.strength.tension - normal
@@ -56,7 +57,7 @@ class ResultantLaw:
         )
 
     def violated(self, action: Array, tolerance: float = 0.0) -> Mask:
-        """Failure modes ``(nj, 3)`` of actions ``(nj, 3)`` that exceed Eq. 3 by more than a force [N]."""
+        """Failure modes ``(nj, 3)`` in which actions ``(nj, 3)`` exceed Eq. 3 by more than a tolerance [N]."""
         room = tolerance * np.column_stack([np.ones_like(self.arm), np.ones_like(self.arm), self.arm])
         beyond: Mask = self.excess(action) > room
         return beyond

@@ -1,19 +1,19 @@
 """Cohesive joint points that soften: fracture in opening (mode I) and in slip (mode II), down to dry friction.
 
-With damage D, of both modes together and never healing, the truncated cone of `mohr_coulomb` shrinks towards its
-dry one, f_t (1 − D) and s (1 − D). In opening the traction falls linearly from f_t at δ_e = f_t / k_n to nothing at
-δ_c = 2 G_I / f_t and unloads to the origin; in slip the cohesion falls linearly with the slip s_p that does not
-come back, to nothing at s_c = 2 G_II / c. Each encloses its fracture energy exactly:
+With the damage D, common to both modes and irreversible, the truncated cone of `mohr_coulomb` shrinks to that of a dry
+joint, f_t (1 − D) and s (1 − D). In opening, the traction falls linearly from f_t at δ_e = f_t / k_n to zero at
+δ_c = 2 G_I / f_t, and unloads to the origin; in slip, the cohesion falls linearly with the accumulated plastic slip
+s_p, to zero at s_c = 2 G_II / c. Each branch encloses its fracture energy exactly:
 
     D_I = (δ − δ_e) / (δ_c − δ_e),    D_II = s_p / s_c,    D = max over time of (D_I² + D_II²)^{1/2} ≤ 1
 
-(Munjiza 2004, with a straight branch). With x that mean, exponential branches of the same energies have
+(Munjiza 2004, with a linear branch). With x this root of squares, exponential branches of the same energies have
 
     D = 1 − e^(−2x),    f_t (1 − D) = f_t exp(−(δ − δ_e) / (G_I / f_t − δ_e / 2)),    c (1 − D) = c exp(−c s_p / G_II)
 
-(Lourenço & Rots 1997; only `interface` follows them). A joint whose δ_c lies before δ_e breaks at once: it has stored
-more than G_I. One without a tensile strength has no G_I to spend: however far it opens, it keeps its cohesion; with
-G_I = 0 it loses it as soon as it opens.
+(Lourenço & Rots 1997; only `interface` has them). A joint with δ_c < δ_e breaks at once, because it has stored more
+than G_I. A joint without tensile strength cannot dissipate G_I: it keeps its cohesion however far it opens; with
+G_I = 0 it loses the cohesion as soon as it opens.
 """
 
 import math
@@ -29,20 +29,20 @@ from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, Kernel
 from .point_law import PointLaw
 
 HISTORY = (*PLASTIC_HISTORY, "damage", "slipped")
-"""Beside the rows of plastic points: damage, and the length of the path that they have slipped along [m]."""
+"""History rows after those of plastic points: damage, and the accumulated length of plastic slip [m]."""
 
 DAMAGE, SLIPPED = HISTORY.index("damage"), HISTORY.index("slipped")
 
 NEVER = 1e30
-"""Opening [m] at which a joint that is perfectly plastic in opening ends to soften.
+"""Opening [m] at which softening ends for a joint that is perfectly plastic in opening.
 
-Damage on the way there is small, but must not vanish when it is squared: numbers as small as that take a processor a
-hundred cycles. Of slip without end there is none.
+Damage on the way there is small, but must not underflow when it is squared: numbers that small take a processor a
+hundred cycles. Slip without softening has no such limit: 1 / s_c is zero.
 """
 
 
-LEFT = 1e-7
-"""Strength, in strengths, at which an exponential branch ends."""
+RESIDUAL_STRENGTH = 1e-7
+"""Strength, relative to the initial one, at which an exponential branch ends."""
 
 
 def softening_constants(material: JointMaterial) -> tuple[float, ...]:
@@ -56,9 +56,9 @@ def softening_constants(material: JointMaterial) -> tuple[float, ...]:
 
 
 def _end_of_softening(energy: float | None, strength: float, never: float) -> float:
-    """Jump at which a linear branch from a strength has spent an energy [m]; tiny for none.
+    """Jump [m] at which a linear branch from a strength has dissipated an energy; tiny for zero energy.
 
-    Without a strength an energy is never spent, as with one that is as small as you like.
+    Without strength, energy is never dissipated, as in the limit of a vanishing strength.
     """
     if energy is None or (energy > 0 and strength == 0):
         return never
@@ -66,7 +66,7 @@ def _end_of_softening(energy: float | None, strength: float, never: float) -> fl
 
 
 def weakens_in_fracture(constants: Array) -> Mask:
-    """Whether materials of some constants ``(ns, n)`` have a strength, and an energy after which it is gone."""
+    """Whether materials with constants ``(ns, n)`` have a strength and a finite fracture energy."""
     _, _, tension, shear, _, _, _, last, per_slip = constants[:, :9].T  # as in `softening_constants`
     return np.asarray(((tension > 0) | (shear > 0)) & ((last < NEVER) | (per_slip > 0)))
 
@@ -80,17 +80,17 @@ def stored_by_secant(points: KernelLaw, opening: Array, normal: Array, tangentia
 
 @kernel
 def damage_at(x: float, exponential: bool) -> float:
-    """D at some x, which ends a straight branch at 1."""
+    """Damage D at x; a linear branch ends at x = 1."""
     if not exponential:
         return min(1.0, x)
     left = math.exp(-2.0 * x)
-    return 1.0 - left if left > LEFT else 1.0
+    return 1.0 - left if left > RESIDUAL_STRENGTH else 1.0
 
 
 @kernel
 def way_to(damage: float, exponential: bool) -> float:
-    """The x at some D."""
-    return -0.5 * math.log(max(LEFT, 1.0 - damage)) if exponential else damage
+    """The x at a damage D."""
+    return -0.5 * math.log(max(RESIDUAL_STRENGTH, 1.0 - damage)) if exponential else damage
 
 
 @kernel
@@ -120,14 +120,14 @@ def softening_kernel(
             sheared = min(1.0, slipped[i] * per_slip)
             after = max(before, min(1.0, np.sqrt(torn * torn + sheared * sheared)))
             sound = 1.0 - after
-            # Secant stiffness in opening: the traction of this damage at the opening that would cause it in mode I.
+            # Secant stiffness in opening: the strength at this damage over the opening that would cause it in mode I.
             onset = first + before * (last - first)
             secant_before = (1.0 - before) * tension / onset
             secant = sound * tension / (first + after * (last - first))
             if tension == 0.0:
                 secant_before, secant = 0.0, 0.0
             elastic = secant * jump_n if jump_n > 0.0 else k_n * jump_n
-            # The triangle between the two secants: exact along the straight branch, however long the step.
+            # The triangle between the two secants: exact on the linear branch, for any step size.
             reach = max(jump_n, 0.0)
             spent[i] += 0.5 * (secant_before - secant) * reach * min(reach, onset)
             n = elastic
@@ -159,4 +159,4 @@ SOFTENING = Law(
     response=PointLaw,
     weakens=weakens_in_fracture,
 )
-"""Models that solve for rest follow no softening: to them its joints are perfectly plastic."""
+"""Softening law; static models do not follow the softening, but treat these joints as perfectly plastic."""

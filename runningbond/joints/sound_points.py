@@ -1,7 +1,7 @@
-"""Joint points whose strength is whole and not reached: those that `interface` leaves to loops in vector registers.
+"""Undamaged joint points within their strength, which `interface` evaluates in loops that run in vector registers.
 
-Most points of cracks that are only possible, and of mortar away from where a wall fails, are such for ever. They answer
-bit by bit as `interface.any_points` has them answer, but for the sign of a zero.
+Most points of potential cracks, and of mortar away from where a wall fails, always stay sound. Results equal those of
+`interface.any_points` bit by bit, except for the sign of a zero.
 """
 
 import numpy as np
@@ -19,10 +19,10 @@ from .softening import DAMAGE
 def traction_when_sound(
     jumps: tuple[float, float], changes: tuple[float, float], plastic: float, of: Array, viscosity: float
 ) -> tuple[float, float, float, float]:
-    """Normal traction without and with viscosity, shear without and with it [Pa], of a point of whole strength.
+    """Normal traction without and with viscosity, then shear without and with it [Pa], of an undamaged point.
 
-    From its jumps and their changes in a step, and its plastic slip [m]. Shear without viscosity is that of its spring,
-    which a point within its strength holds.
+    They follow from its jumps, their changes in a step, and its plastic slip [m]. Shear without viscosity is that of
+    the elastic spring, because the point is within its strength.
     """
     (jump_n, jump_t), (change_n, change_t) = jumps, changes
     k_t, tension, shear, friction, first, k_n = of[1], of[2], of[3], of[4], of[6], of[13]
@@ -30,7 +30,7 @@ def traction_when_sound(
     is_open = jump_n > 0.0
     elastic = (secant if is_open else k_n) * jump_n
     n = elastic + (0.0 if is_open else viscosity * k_n * change_n)
-    n = tension if n > tension else n  # so spelt, what is no number stays none
+    n = tension if n > tension else n  # written so that NaN stays NaN
     most = shear + friction * tension - friction * n
     most = most if most > 0.0 else 0.0
     trial = k_t * (jump_t - plastic)
@@ -42,7 +42,7 @@ def traction_when_sound(
 def are_sound(
     rows: tuple[np.uint64, np.uint64], of: Array, opening: Array, slip: Array, history: Array, viscosity: float
 ) -> bool:
-    """Whether points from one up to another have their strength whole, and stay within it in this step."""
+    """Whether all points in a range of rows are undamaged, and stay within their strength in this step."""
     plastic, before_n, before_t = history[PLASTIC_SLIP], history[OPENING_BEFORE], history[SLIP_BEFORE]
     damage, slipped, seat, crushed = history[DAMAGE], history[SLIPPED], history[SEAT], history[CRUSHED]
     tension, shear, friction, first, per_slip = of[2], of[3], of[4], of[6], of[8]
@@ -57,7 +57,7 @@ def are_sound(
         sheared = slipped[i] * per_slip
         pressure = max(0.0, -min(elastic, n))
         most = max(abs(trial), abs(t))
-        # Asked so that what is no number is not sound.
+        # Conditions are written so that NaN is not sound.
         whole = (damage[i] + sheared * sheared + crushed[i] <= 0.0) & (jumps[0] <= first)
         held = (abs(trial) <= room - friction * n) & (abs(trial) <= room - friction * elastic)
         found += whole & held & (pressure * pressure + cap_shear * most * most <= most_squared)
@@ -75,7 +75,7 @@ def sound_points(
     normal: Array,
     tangential: Array,
 ) -> None:
-    """Bring points from one up to another on, which `are_sound`: as `interface.any_points` does."""
+    """Update a range of points that `are_sound`, with the result of `interface.any_points`."""
     damped, plastic, seat = history[DAMPED_WORK], history[PLASTIC_SLIP], history[SEAT]
     before_n, before_t = history[OPENING_BEFORE], history[SLIP_BEFORE]
     for i in range(rows[0], rows[1]):
@@ -92,5 +92,5 @@ def sound_points(
 
 @kernel
 def can_be_sound(of: Array) -> bool:
-    """Whether points of some constants have a strength to lose, and close at a constant stiffness."""
+    """Whether points with the constants `of` have a strength to lose, and close at a constant stiffness."""
     return bool((of[2] > 0.0 or of[3] > 0.0) and of[12] == 0.0)

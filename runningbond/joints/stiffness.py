@@ -1,24 +1,25 @@
-"""Elastic stiffness of a joint, given directly or from its mortar, and whether it is one that models can use."""
+"""Elastic stiffness of a joint, given directly or from its mortar, and checks whether models can use it."""
 
 import numpy as np
 
 from runningbond.scene import Indices, JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
 
 GIVES = 2.0
-"""Least motion that counts as a collapse, in what the springs of all joints give under that load.
+"""Smallest motion that counts as a collapse, relative to the elastic motion of all joints under that load.
 
-Put on at once, it moves a wall so far that has not begun to fall.
+A load that is applied suddenly moves an elastic wall this far without any collapse.
 """
 
 SOFT = 0.02
-"""Overlap of two blocks, in displacements that count as collapse, above which joints are too soft.
+"""Overlap of two blocks, relative to the displacement that counts as collapse, above which joints are too soft.
 
-The overlap at a wall's base is that of one joint; its top settles by half as many of them as there are courses. At
-this share of a collapse of 0.05 block sizes, 1 ‰ of a block, a hundred courses settle by as much as a fall.
+The overlap at a wall's base is that of one joint; the top of the wall settles by half that overlap times the number of
+courses. With a collapse displacement of 0.05 block sizes, the limit is 1 ‰ of a block: a hundred courses then settle by
+as much as a collapse.
 """
 
 STIFF = 1e-5
-"""Force that rounding in displacements as large as a collapse may amount to, in units of force: that of rest."""
+"""Rounding force at displacements of a collapse, in units of force, above which joints are too stiff (as at rest)."""
 
 EPSILON = float(np.finfo(np.float64).eps)
 
@@ -26,7 +27,7 @@ EPSILON = float(np.finfo(np.float64).eps)
 def joint_stiffness(material: JointMaterial) -> Stiffness:
     """Normal and tangential stiffness per unit area [Pa/m].
 
-    A thin layer of mortar between stiff blocks, plane stress, confined along the joint:
+    For a thin layer of mortar between stiff blocks, in plane stress and confined along the joint:
     k_n = E / (e (1 − ν²)), k_t = E / (2 (1 + ν) e) (Cecchi & Sab 2004).
 
     Raises
@@ -51,15 +52,16 @@ def joint_stiffness(material: JointMaterial) -> Stiffness:
 
 
 def stiffest(material: JointMaterial) -> float:
-    """Largest normal stiffness per unit area [Pa/m], that of a joint that has closed."""
+    """Largest normal stiffness per unit area [Pa/m], that of a fully closed joint."""
     return joint_stiffness(material).normal if material.closure is None else material.closure.stiffest
 
 
 def block_compliance(scene: Scene) -> float:
-    """Share of the blocks in the compliance of columns of blocks and joints: of one material each, k_n h / (k_n h + E).
+    """Share of the blocks in the compliance of columns of blocks and joints; k_n h / (k_n h + E) for one material each.
 
-    Of several it is Σ l h / E over Σ l (h / E + 1 / k_n), of bed joints of length l and the blocks of height h on them;
-    of all joints where none is one. Blocks without a modulus are rigid; zero where joints have no stiffness.
+    For several materials it is Σ l h / E over Σ l (h / E + 1 / k_n), summed over bed joints of length l with blocks of
+    height h on them, or over all joints if there are no bed joints. Blocks without a modulus are rigid; the share is
+    zero if joints have no stiffness.
     """
     beds = _beds(scene)
     numbers = np.unique(scene.material_of_joint[beds])
@@ -76,7 +78,7 @@ def block_compliance(scene: Scene) -> float:
 
 
 def _beds(scene: Scene) -> Indices:
-    """Bed joints under blocks, or all joints where there is none; those inside blocks and under a beam aside."""
+    """Bed joints under blocks, or all joints if there are none; except those inside blocks and under a beam."""
     joints = scene.joints
     between = ~joints.inner & ~scene.is_beam[_upper(scene)]
     flat = between & joints.is_bed
@@ -84,21 +86,21 @@ def _beds(scene: Scene) -> Indices:
 
 
 def _upper(scene: Scene) -> Indices:
-    """The higher one of the two blocks of each joint."""
+    """Upper one of the two blocks of each joint."""
     block = scene.joints.block
     a, b = scene.blocks.centroid[block, 1].T
     return np.asarray(np.where(a > b, *block.T))
 
 
 def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:
-    """What an outcome's message is to say of stiffnesses that its numbers suffer from; empty for others.
+    """Note for an outcome's message on stiffnesses that impair its accuracy; empty for others.
 
     Parameters
     ----------
     overlap, collapse, size
-        Largest depth of one block in another at rest, displacement that counts as collapse, size of a block [m].
+        Largest overlap of two blocks at rest, displacement that counts as collapse, size of a block [m].
     stiffness, force_unit
-        Largest stiffness of a joint point [N/m], and smallest force by which unbalanced ones are measured [N].
+        Largest stiffness of a joint point [N/m], and smallest force unit for unbalanced forces [N].
     """
     if overlap > SOFT * collapse:
         return (

@@ -1,4 +1,4 @@
-"""Which law the joint points of a wall have, and that law over all of them, with its compiled kernel."""
+"""Choice of the law for the joint points of a wall, and that law over all points, with its compiled kernel."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,11 +13,11 @@ from .law import KernelLaw, Law
 from .softening import SOFTENING
 
 PER_MATERIAL = 4
-"""Joints a material from which on those of one stand together."""
+"""Number of joints per material from which on joints are grouped by material."""
 
 
 def law_of(material: JointMaterial) -> Law:
-    """Law of a material: its own, or Coulomb's, which softens where there is an energy; or the one with all else."""
+    """Law of a material: its own, or Coulomb's, with softening if it has a fracture energy, or `INTERFACE` beyond."""
     if isinstance(material.law, Law):
         return material.law
     if material.law is not None:
@@ -29,9 +29,9 @@ def law_of(material: JointMaterial) -> Law:
 
 
 def common_law(materials: Sequence[JointMaterial]) -> Law:
-    """The one law of materials that joints of one wall are of; a `SceneError` for laws that do not go together.
+    """Common law for the materials of one wall's joints; raises a `SceneError` for laws that cannot be combined.
 
-    Plastic joints may stand beside softening ones, and both beside those that crush or close.
+    Plastic joints may be combined with softening ones, and both with joints that crush or close.
     """
     laws = {law.name: law for law in map(law_of, materials)}
     nested = [law.name for law in (COULOMB, SOFTENING, INTERFACE) if law.name in laws]
@@ -42,25 +42,25 @@ def common_law(materials: Sequence[JointMaterial]) -> Law:
 
 
 def with_impacts(scene: Scene) -> Scene:
-    """A scene whose joints, where they are all Coulomb's, keep a ledger that is exact in impacts too."""
+    """Scene with an energy ledger that is exact in impacts too, if all of its joints follow Coulomb's law."""
     if common_law(scene.joint_materials) is not COULOMB:
         return scene
     return replace(scene, joint_materials=tuple(replace(each, law=IMPACTS) for each in scene.joint_materials))
 
 
 def row_of_joint(scene: Scene) -> Indices:
-    """Material by which joints stand together in kernels ``(nj,)``, or 0 for all where most joints have their own.
+    """Material by which kernels group joints ``(nj,)``, or 0 for all if many joints have a material of their own.
 
-    The law has no rows of points of one material then, and what is alike in shape goes on from joint to joint.
+    The law then has no long runs of points of one material, and runs of joints of one shape are not interrupted.
     """
     apart = len(scene.joints) >= PER_MATERIAL * len(scene.joint_materials)
     return scene.material_of_joint if apart else np.zeros_like(scene.material_of_joint)
 
 
 def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:
-    """Law over joint points from the joints' materials, which need a stiffness, and that of each point ``(np,)``.
+    """Law over joint points, from the joints' materials, which need a stiffness, and each point's material ``(np,)``.
 
-    Points of one material in a row are taken together.
+    Consecutive points of one material form a segment.
     """
     law = common_law(materials)
     start = np.flatnonzero(np.diff(of_point, prepend=-1))

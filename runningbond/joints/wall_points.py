@@ -1,4 +1,4 @@
-"""Joint points of a wall, each with the strength and the stiffness of its joint's material."""
+"""Joint points of a wall, with the strength and stiffness of their joints' materials."""
 
 import math
 
@@ -13,76 +13,77 @@ from .points import JointPoints, Rule, joint_points, lobatto
 from .stiffness import joint_stiffness, stiffest
 
 BETWEEN = 9
-"""Points of a joint along which pressures are spread: with five a toe that crushes bears 2.4 % more, with 17 0.4 % less
-(SW.200.1, docs/laboratory.md)."""
+"""Number of points on a joint that softens, crushes or closes: with 5 points, a toe that crushes carries 2.4 % more,
+with 17 points 0.4 % less (SW.200.1, docs/laboratory.md)."""
 
-LEAST = 3
-"""Points of a part of such a joint at least: two are as stiff against turning as if it were all at its ends."""
+MIN_POINTS = 3
+"""Least number of points on a part of such a joint: with two, its rotational stiffness is that of its ends alone."""
 
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
-    """Lay a quadrature rule on every joint of a scene, its ends moved in by the joint's inset."""
+    """Place a quadrature rule on every joint of a scene, with its ends moved in by the joint's inset."""
     return joint_points(scene.joints, scene.thickness_of_joints, rule, wall_inset(scene))
 
 
 def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:
-    """Points that the law of a scene's joints is evaluated at: the ends, and what softens, crushes or closes between.
+    """Points at which joints are evaluated: their ends, and also between them if any joint softens, crushes or closes.
 
-    At its ends alone a joint is three times as stiff against turning as along all of its length. Dry and perfectly
-    plastic ones bear the same, but that friction may bring them along another path; one that softens bears up to three
-    times as much (a stone on a bed).
+    Evaluated at its ends alone, a joint is three times as stiff against rotation as along its whole length. Dry and
+    perfectly plastic joints carry the same load in both cases, although friction may lead along another path; a
+    softening joint carries up to three times as much at its ends alone (a stone on a bed).
 
-    Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
+    If joints have several parts, each part has a rule, and all parts have about as many points as a whole joint.
     """
     return spread_rule(parts) if spreads(scene, finite=finite) else lobatto()
 
 
 def spreads(scene: Scene, *, finite: bool = False) -> bool:
-    """Whether any joint softens, crushes or closes, so that how pressures are spread along it matters.
+    """Whether any joint softens, crushes or closes, so that the distribution of pressure along it matters.
 
-    At `finite` displacements sides may meet anew, which are of the default material even if no joint was.
+    At `finite` displacements, sides may come into contact with the default material even if no joint is made of it.
     """
     materials = scene.joint_materials if finite else scene.materials_of_joints
     return any(each.compressive_strength or each.closure or each.softens or _breaks(each.law) for each in materials)
 
 
 def _breaks(law: object) -> bool:
-    """Whether a material's own law is one that knows damage."""
+    """Whether a material's own law includes damage."""
     return isinstance(law, Law) and law.damage is not None
 
 
 def impact_note(scene: Scene) -> str:
-    """What a message says of impacts on joints that bear them all along; empty where their ends do."""
-    what = "joints that soften, crush or close bear impacts all along, which then take less of a rocking motion"
-    return f"{what} than Housner's" if spreads(scene, finite=True) else ""
+    """Note for a message on impacts on joints that are evaluated along their length; empty for ends alone."""
+    what = "joints that soften, crush or close take impacts along their whole length, and rocking loses less energy"
+    return f"{what} than by Housner's equation" if spreads(scene, finite=True) else ""
 
 
 def ends_note(scene: Scene, points: JointPoints) -> str:
-    """What a message says of joints that bear at a few points, under a beam held at its height; empty elsewhere.
+    """Note for a message on joints with few points under a beam held at its height; empty for others.
 
-    What turns under it presses on the near end of a joint as if all of the pressure about it were there: a strut is
-    then steeper than it is, and slides where friction is enough for that which it is.
+    A block that rotates under the beam presses on the near end of a joint as if all pressure around it acted there: its
+    strut is then steeper than the real one, and slides although friction is sufficient for the real one.
     """
     fewest = int(np.bincount(points.joint).min()) if len(points) else BETWEEN
     if not len(scene.late_pins) or fewest >= BETWEEN:
         return ""
     where = "their ends" if fewest == 2 else "few points"
-    return f"joints bear at {where} alone, and slide under a beam held at its height where whole ones may lock"
+    what = "slide under a beam held at its height where joints along whole sides may lock"
+    return f"joints carry forces only at {where}, and {what}"
 
 
 def spread_rule(parts: int = 1) -> Rule:
-    """Points of `wall_rule` where joints soften, crush or close."""
-    return lobatto(BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts)))
+    """Points of `wall_rule` for joints that soften, crush or close."""
+    return lobatto(BETWEEN if parts == 1 else max(MIN_POINTS, 1 + math.ceil((BETWEEN - 1) / parts)))
 
 
 def listed_points(scene: Scene, count: int) -> JointPoints | None:
-    """The points on a scene's joints that so many forces are of: their ends, or those of `wall_rule`, or others."""
+    """Points on a scene's joints that match a number of forces: the joints' ends, or those of `wall_rule`, or None."""
     rules = lobatto(), wall_rule(scene, finite=True)
     return next((wall_points(scene, rule) for rule in rules if count == len(rule.nodes) * len(scene.joints)), None)
 
 
 def wall_inset(scene: Scene) -> Array:
-    """Distance [m] by which the points of each joint of a scene keep from its ends, ``(nj,)``."""
+    """Distance [m] of the outermost points of each joint of a scene from the joint's ends, ``(nj,)``."""
     return np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
 
 
@@ -93,7 +94,7 @@ def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
 
 
 def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
-    """Tan φ, f_t [Pa] and shear at that tension [Pa] of joints of a scene by their law, three ``(n,)``."""
+    """Tan φ, f_t [Pa] and shear at that tension [Pa] of joints of a scene from their laws, three ``(n,)``."""
     laws = [(material, material.law) for material in scene.joint_materials]
     cones = [law.cone(material) if isinstance(law, Law) else truncated_cone(material) for material, law in laws]
     friction, tension, shear = np.array(cones)[scene.material_of_joint[joint]].T
@@ -108,9 +109,9 @@ def wall_caps(scene: Scene, joint: Indices) -> tuple[Array, Array]:
 
 
 def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tuple[Array, Array]:
-    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m], as of `joint_stiffness`.
+    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m], as in `joint_stiffness`.
 
-    Of joints that are `closed` it is the largest that they come to.
+    If the joints are `closed`, the normal stiffness is the largest that they reach.
     """
     both = [(joint_stiffness(each), stiffest(each)) for each in scene.materials_of_joints]
     of_material = np.array([(largest if closed else each.normal, each.shear) for each, largest in both])
@@ -119,14 +120,16 @@ def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tup
 
 
 def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Array) -> PointLaw:
-    """Law of a scene's joint points with a tangent, of points with a strength and stiffnesses ``(np,)`` [N/m].
+    """Law with a tangent for a scene's joint points, from their strength and stiffnesses ``(np,)`` [N/m].
 
-    A law without a tangent is refused by a `SceneError`.
+    Raises a `SceneError` for a law without a tangent.
     """
     for material in scene.materials_of_joints:
         for key in ("compressive_strength", "closure"):
             if getattr(material, key) is not None:
-                what = "is not taken by dem-static, which knows neither crushing nor closure; dem-dynamic and fem do"
+                what = (
+                    "is not supported by dem-static, which models neither crushing nor closure; dem-dynamic and fem do"
+                )
                 raise SceneError(f"{table_of(material)}.{key}", what)
     if all(material.law is None for material in scene.materials_of_joints):
         return PointLaw(strength, normal, shear)

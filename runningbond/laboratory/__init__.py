@@ -1,4 +1,4 @@
-"""The laboratory: walls that were broken, predicted blind, and scored beside two formulas that anyone works out."""
+"""Laboratory: walls tested to failure, predicted blind, and scored beside two hand formulas."""
 
 from .folder import read_folder, shipped_walls
 from .measured import MeasuredWall

@@ -1,4 +1,4 @@
-"""Figures of the laboratory: a card a wall, and the chart of error against experiment over cost."""
+"""Figures of the laboratory: one card per wall, and the chart of error against experiment over cost."""
 
 from collections.abc import Sequence
 from math import inf
@@ -21,19 +21,20 @@ from .scores import cycle_ends, cycle_peaks
 from .summary import errors_by_hand, kind_of
 
 PUSHED_LEFT = ("SW.200.1",)
-"""Shipped walls whose cracks were drawn as pushed to the left, though their records are positive."""
+"""Shipped walls whose cracks were drawn as pushed to the left, although their records are positive."""
 
 MEASURED = "0.15"
 LEAST_ERROR, LEAST_SECONDS = 0.004, 5e-3
-"""Ends of the chart's axes, at which smaller numbers are drawn."""
+"""Lower ends of the chart's axes, at which smaller values are drawn: error, and CPU time [s]."""
 
 
-SEEN = 1.6
-"""Loads without a curve that are larger, relative to the test's, are left to the table."""
+DRAWN_BELOW = 1.6
+"""Ratio to the measured strength above which a predicted load without a curve is not drawn, only listed in the
+table."""
 
 
 def card(predictions: Sequence[Prediction]) -> Figure:
-    """One wall: curves, and the motion of its end by the model nearest to the test beside the cracks drawn there."""
+    """Card of one wall: curves, and beside the cracks drawn after the test the mechanism of the model nearest to it."""
     wall = predictions[0].wall
     drawn = drawn_by(predictions)
     panels = 1 + (drawn is not None) + (wall.cracks is not None)
@@ -44,33 +45,33 @@ def card(predictions: Sequence[Prediction]) -> Figure:
         draw_mechanism(axes.pop(0), drawn.scene, drawn.outcome)
     if wall.cracks is not None:
         mirrored = _goes_the_other_way(predictions[0])
-        # In grey where a picture has no colours, instead of in those of a chart.
+        # Pictures without colours are shown in grey, not in the colours of a chart.
         axes[0].imshow(imread(wall.cracks, format="png")[:, :: -1 if mirrored else 1], cmap="gray", vmin=0, vmax=1)
         axes[0].set_title("cracks, as drawn after the test" + (", mirrored" if mirrored else ""), fontsize=9)
         axes[0].axis("off")
-    figure.draw_without_rendering()  # a first layout, from which that of the drawing knows how tall the wall's axes get
+    figure.draw_without_rendering()  # first layout: the one of the drawing depends on the height of the wall's axes
     return figure
 
 
 def _goes_the_other_way(prediction: Prediction) -> bool:
-    """Whether a wall was pushed to the left, as its cracks show it, and is predicted to the right."""
+    """Whether a wall was pushed to the left, as its drawn cracks show, and is predicted to the right."""
     wall, drive = prediction.wall, prediction.scene.drive
     goes_right = drive is None or drive.force[0] > 0
     return goes_right and (wall.is_turned or wall.name in PUSHED_LEFT)
 
 
 def drawn_by(predictions: Sequence[Prediction]) -> Prediction | None:
-    """The prediction of one wall whose motion is drawn; None where none has one."""
+    """The prediction whose mechanism is drawn for a wall; None if there is none."""
     return min((each for each in predictions if each.mode and not each.rung.is_by_hand), key=_distance, default=None)
 
 
 def _distance(prediction: Prediction) -> tuple[bool, float]:
-    """How far a model is from the test; those that were not led along the test's path come last."""
+    """Sort key: error of a prediction against the test; predictions not driven along the test's path come last."""
     return not len(prediction.curve), inf if prediction.error is None else abs(prediction.error)
 
 
 def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
-    """Curves where there are some, and levels of those that know of a load only [mm, kN]."""
+    """Plot the curves, and horizontal lines for predictions of a load only [mm, kN]."""
     wall = predictions[0].wall
     ends = cycle_ends(wall.path)
     if len(wall.curve):
@@ -84,7 +85,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         look: dict[str, Any] = {"color": each.rung.model.colour, "ls": each.rung.model.line, "label": each.rung.name}
         if not len(each.curve):
             look |= {"rocking": {"ls": ":"}, "sliding": {"ls": "--"}}.get(each.rung.name, {})
-            if each.rung.name != "by-hand" and each.strength < SEEN * (wall.peak or each.strength):
+            if each.rung.name != "by-hand" and each.strength < DRAWN_BELOW * (wall.peak or each.strength):
                 axes.axhline(each.strength / 1e3, lw=0.9, **look)
             continue
         x, y = each.curve.T
@@ -101,13 +102,13 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
 
 
 def _envelope(axes: Axes, curve: Array, path: tuple[float, ...], colour: str, label: str | None = None) -> None:
-    """Peaks of the cycles, in the order of their displacements."""
+    """Plot the peaks of the cycles, in the order of their displacements."""
     ends = sorted(zip(path, cycle_peaks(curve, path), strict=False))
     axes.plot([1e3 * x for x, _ in ends], [y / 1e3 for _, y in ends], "o-", color=colour, lw=1.4, ms=3, label=label)
 
 
 def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:
-    """|ΔV| of every scored wall over the time it took, the median of each model, and the formulas as lines to beat."""
+    """Plot |ΔV| of every scored wall over its CPU time, the median of each model, and the formulas as lines to beat."""
     scored = [each for each in predictions if each.wall.is_scored and each.error is not None]
     kinds = list(dict.fromkeys(map(kind_of, scored))) or ["no"]
     panels = figure.subplots(1, len(kinds), sharey=True, squeeze=False)[0]
@@ -156,9 +157,9 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
 
 
 def _in_whole_decades(axes: Axes) -> None:
-    """Widen an axis of seconds that has fewer than two powers of ten, which alone are labelled."""
+    """Widen an axis of seconds that contains fewer than two powers of ten, because only these are labelled."""
     low, high = axes.dataLim.intervalx
-    if low > high:  # nothing that took any
+    if low > high:  # no point with a time
         return
     first, last = np.floor(np.log10(low)), np.ceil(np.log10(high))
     if np.floor(np.log10(high)) - np.ceil(np.log10(low)) < 1:
@@ -166,7 +167,7 @@ def _in_whole_decades(axes: Axes) -> None:
 
 
 def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:
-    """A level with its name beside the axes, where no point is."""
+    """Draw a horizontal line with its name beside the axes, where there are no points."""
     axes.axhline(error, color="0.35", lw=width, ls="--", zorder=0)
     side = "top" if width > 1 else "bottom"
     axes.annotate(

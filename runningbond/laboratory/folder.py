@@ -1,4 +1,4 @@
-"""Folders of tested walls: one table with a row a wall, and beside it their curves, crack maps and scenes, by name."""
+"""Folders of tested walls: a table with a row per wall, and files of its curve, crack map and scene named after it."""
 
 import csv
 import io
@@ -23,35 +23,36 @@ HEADS = ["displacement_mm", "force_kN"]
 CURVE, SCENE, CRACKS = ENDINGS = (".csv", ".toml", "-cracks.png")
 SEPARATORS = ",;\t"
 COMMENT = "#"
-APART = 100.0
-"""Factor between the largest forces of a curve and of the table that is a slip in a unit."""
+WRONG_UNIT = 100.0
+"""Ratio of the largest force of a curve to that of the table, or its inverse, above which one of them has a wrong
+unit."""
 
 DECIMAL = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 
 
 def raised(error: SceneError) -> None:
-    """Raise what a wall is refused for."""
+    """Raise the error for which a wall is refused."""
     raise error
 
 
 def read_folder(folder: Path, refuse: Callable[[SceneError], None] = raised) -> list[MeasuredWall]:
-    """Walls of a folder, in the order of its table.
+    """Read the walls of a folder, in the order of its table.
 
-    The table is the one CSV file that has a column ``Test unit name``; ``NAME.csv`` holds a wall's curve, ``NAME.toml``
-    its scene and ``NAME-cracks.png`` its cracks, each where there is one. Entries are separated by commas, or by
-    semicolons or tabs, and then numbers may have decimal commas. Lines that begin with # are comments.
+    The table is the one CSV file that has a column ``Test unit name``; ``NAME.csv`` contains a wall's curve,
+    ``NAME.toml`` its scene and ``NAME-cracks.png`` its cracks, each optional. Entries are separated by commas, or by
+    semicolons or tabs, in which case numbers may have decimal commas. Lines that begin with # are comments.
 
     Parameters
     ----------
     folder
         The folder.
     refuse
-        Told why a wall cannot be read, which is then left out; unless it raises that.
+        Called with the reason why a wall cannot be read; the wall is then left out, unless `refuse` raises the error.
 
     Raises
     ------
     SceneError
-        For what cannot be read: one line with the file, its line and what would be right.
+        If something cannot be read: one line with the file, its line and what would be right.
     """
     path, lines = _table(folder)
     heads = lines[0][1]
@@ -69,12 +70,12 @@ def read_folder(folder: Path, refuse: Callable[[SceneError], None] = raised) -> 
 
 
 def shipped_walls() -> dict[str, MeasuredWall]:
-    """Walls that the package ships, by their names."""
+    """Walls that the package ships, by name."""
     return {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
 
 
 def unused(folder: Path) -> list[str]:
-    """Files of a folder that would be a wall's by their names, and are of none in its table."""
+    """Files of a folder that are named like the files of a wall, but belong to no wall in its table."""
     table, lines = _table(folder)
     named = {cell.strip() for _, cells in lines for cell in cells}
     own = {table, *(_files(folder).get(f"{name}{ending}") for name in named for ending in ENDINGS)}
@@ -82,20 +83,20 @@ def unused(folder: Path) -> list[str]:
 
 
 def _files(folder: Path) -> dict[str, Path]:
-    """Files of a folder that are not hidden, by their names with endings in small letters."""
+    """Visible files of a folder, by name with the ending in lower case."""
     files = (path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith("."))
     return {path.with_suffix(path.suffix.lower()).name: path for path in files}
 
 
 def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
-    """The table of a folder, and its lines that are not empty, with their numbers."""
+    """The table of a folder, and its non-empty lines with their numbers."""
     if not folder.is_dir():
         raise SceneError(str(folder), "must be a folder that holds tests.csv")
     tables, unread = list[Path](), list[SceneError]()
     for name, path in _files(folder).items():
         try:
             heads = next(_lines(path), (0, []))[1] if name.endswith(CURVE) else []
-        except SceneError as error:  # of a wall that is refused, unless it is the table
+        except SceneError as error:  # belongs to a refused wall, unless it is the table
             unread.append(error)
         else:
             if any(cell.strip().lstrip("\ufeff").casefold().startswith(NAME) for cell in heads):
@@ -127,7 +128,7 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
 
 
 def _with_point(cell: str) -> str:
-    """An entry, with a decimal point where it is a number with a decimal comma."""
+    """An entry, with a decimal point if it is a number with a decimal comma."""
     return cell.replace(",", ".") if DECIMAL.fullmatch(cell) else cell
 
 
@@ -154,7 +155,7 @@ def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
     peaks = tuple(value for value in printed if value is not None)
     if len(curve) and peaks:
         largest, told = float(np.nanmax(np.abs(curve[:, 1]))), max(peaks)
-        if not told / APART < largest < told * APART:
+        if not told / WRONG_UNIT < largest < told * WRONG_UNIT:
             what = f"has a largest force of {largest:.3g} N, and the table one of {told:.3g} N; are their units right?"
             raise SceneError(f"{name}.csv", what)
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
@@ -164,21 +165,21 @@ def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
 
 
 def _check_picture(path: Path) -> None:
-    """Refuse what is drawn beside the curves in the end and cannot be."""
+    """Refuse a crack map that could not be drawn beside the curves later."""
     try:
         imread(path, format="png")
-    except (OSError, SyntaxError, ValueError) as error:  # SyntaxError is what pillow makes of a damaged one
+    except (OSError, SyntaxError, ValueError) as error:  # pillow raises SyntaxError for a damaged file
         raise SceneError(path.name, "is no PNG picture, or a damaged one") from error
 
 
 def _is_pushed_left(wall: MeasuredWall) -> bool:
-    """Whether a wall was pushed to the negative side, and to the other one not at all or in passing."""
+    """Whether a wall was pushed to the negative side: to the positive one by noise, or less in a monotonic test."""
     right, left = wall.reach
     return left * SWING > right or (left > right and not wall.is_cyclic)
 
 
 def _peaks(wall: MeasuredWall) -> tuple[float, ...]:
-    """Largest forces of a curve to either side, or to the one that the wall was pushed to."""
+    """Largest forces of a curve to both sides, or only to the side to which the wall was pushed."""
     if not len(wall.curve):
         return ()
     forces = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
@@ -189,7 +190,7 @@ def _peaks(wall: MeasuredWall) -> tuple[float, ...]:
 
 
 def read_curve(path: Path) -> Array:
-    """Displacement [m] and force [N] of a curve, ``(n, 2)``; rows of two NaN part its loops."""
+    """Displacement [m] and force [N] of a curve, ``(n, 2)``; rows of two NaN separate its loops."""
     lines = list(_lines(path))
     heads = [cell.strip() for cell in lines[0][1]] if lines else []
     if any(head not in heads for head in HEADS):

@@ -1,6 +1,6 @@
-"""What is worked out by hand: the force at which a wall rocks or slides under all that presses on it.
+"""Hand formulas: the force at which a wall rocks or slides under the total vertical load.
 
-Outcomes of these are kept under the digest of this file as well, which imports nothing else of its room.
+Stored outcomes of these formulas also depend on the digest of this file, which imports nothing else from its package.
 """
 
 import numpy as np
@@ -9,33 +9,34 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
 FORMULAS = ("rocking", "sliding")
-"""Names of the two formulas that are worked out by hand."""
+"""Names of the two hand formulas."""
 
 WHOLE = 0.5
-"""Length of a bed, in lengths of the longest one, from which on a wall slides along it: openings part it."""
+"""Length of a bed, relative to the longest one, above which a wall may slide along it; openings interrupt shorter
+beds."""
 
 
 def by_hand(scene: Scene) -> dict[str, float]:
-    """What is worked out by hand: the forces [N] of `FORMULAS`."""
+    """Forces [N] by each of the hand formulas, `FORMULAS`."""
     beam = scene.beam
     if beam is None or beam.drive is None:
         raise SceneError("beam.drive", "is missing; the formulas are of walls that are pushed at a beam")
     (left, bottom), (right, _) = scene.blocks.extent(scene.wall)
     length, force = right - left, pressed(scene)
     height = scene.blocks.centroid[beam.block, 1] - bottom if beam.drive.at is None else beam.drive.at
-    # A beam that does not turn bends the wall doubly: it presses on one corner of its top.
+    # A beam that does not rotate causes double bending: it presses on one corner of the wall's top.
     lever = length / (2 * height) if beam.condition == "free" else length / height
     return dict(zip(FORMULAS, (force * lever, _sliding(scene, force)), strict=True))
 
 
 def pressed(scene: Scene) -> float:
-    """Force that presses on the wall from above [N]: the beam and its load, and the dead loads on the wall."""
+    """Vertical force on top of the wall [N]: the beam and its load, and the dead loads on the wall."""
     weight = 0.0 if scene.beam is None else -scene.beam.mass * scene.load.gravity[1]
     return float(weight - scene.dead_forces.force[:, 1].sum())
 
 
 def _sliding(scene: Scene, force: float) -> float:
-    """N tan φ + c L t [N] of the bed along which that is least; of several materials each has its share of N."""
+    """Smallest N tan φ + c L t [N] of all beds; if a bed has several materials, each carries its share of N."""
     joints, tolerance = scene.joints, scene.blocks.tolerance
     (x0, y0), (x1, y1) = joints.ends[:, 0].T, joints.ends[:, 1].T
     flat = np.flatnonzero(np.abs(y1 - y0) <= tolerance)
@@ -54,7 +55,7 @@ def _sliding(scene: Scene, force: float) -> float:
 
 
 def formula(scene: Scene, tolerance: float, *, what: str) -> Outcome:
-    """The outcome of one of `FORMULAS`, or of any other name the smaller of them; a model's ``solve``."""
+    """Outcome of one of `FORMULAS`, or of the smaller one for any other name; used as the ``solve`` of a model."""
     loads = by_hand(scene)
     load = loads.get(what, min(loads.values()))
     message = "worked out by hand" + (", without its ties" if len(scene.ties) else "")

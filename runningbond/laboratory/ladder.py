@@ -1,4 +1,4 @@
-"""The ladder that walls are predicted with: two formulas worked out by hand, and models with ever more in them."""
+"""The ladder of predictions: two hand formulas, and models that include more and more features."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -21,24 +21,24 @@ PUSHED = Features(driven=False)
 
 @dataclass(frozen=True, eq=False)
 class Rung:
-    """A model, with the features of a wall that it is handed."""
+    """A model, and the features of walls that its scenes include."""
 
     model: Model
     features: Features
-    base: str = ""  # the model of the package that it is; empty for what is worked out by hand
+    base: str = ""  # name of the package's model; empty for hand formulas
     is_by_hand: bool = False
 
     @property
     def name(self) -> str:
-        """What tables call it."""
+        """Its name in tables."""
         return self.model.name
 
     def leaves_out(self, scene: Scene, *, is_cyclic: bool) -> str:
-        """Why a wall is not predicted with it; empty where it is."""
+        """Why a wall is not predicted with this rung; empty if it is."""
         if self.base != "fem":
             return ""
         if is_cyclic:
-            return "left out: walls that are pushed to and fro take it too long"
+            return "left out: cyclic tests take too long with it"
         rocks = scene.beam is not None and scene.beam.condition == "free"
         return (
             "left out: a wall that rocks goes beyond small displacements" if rocks and not self.model.is_finite else ""
@@ -53,9 +53,9 @@ def _run(
     settings: Mapping[str, Any],
     observe: Callable[..., None] | None = None,
 ) -> Outcome:
-    """Run a model of the package with some settings, and an observer if there is one, by the processor's clock.
+    """Run a model of the package with given settings, and an observer if there is one, and measure the CPU time.
 
-    That stands still while kernels are compiled, which they are once on a machine.
+    The time excludes the compilation of kernels, which happens once per machine.
     """
     watched = {} if observe is None else {"observe": observe}
     for key in settings:
@@ -134,7 +134,7 @@ LADDER: dict[str, Rung] = {
 
 
 def find_rungs(names: str | None) -> list[Rung]:
-    """Rungs by their names, separated by commas; all of them where none is given."""
+    """Rungs by their names, separated by commas; all rungs if no names are given."""
     if names is None:
         return list(LADDER.values())
     found = []

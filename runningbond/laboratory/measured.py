@@ -1,4 +1,4 @@
-"""A wall that was tested: what is known of it before its test, and what was measured in it."""
+"""A tested wall: what is known before its test, and what was measured in it."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,19 +10,20 @@ from runningbond.scene import Array
 from .table_row import TableRow
 
 SWING = 0.05
-"""Displacements that turn back by less, relative to the largest, are noise of the record and no turn of the rig."""
+"""Displacement, relative to the largest, below which a reversal is noise of the record and no turning point of the
+loading."""
 
-BOTH = 0.2
-"""Displacement to the lesser side, relative to that to the other, above which a wall was pushed to both."""
+TWO_SIDED = 0.2
+"""Ratio of the largest displacements to the lesser and to the other side above which a wall was pushed to both."""
 
 LARGER = 1.1
-"""Cycles not larger than the last one by this factor repeat it, and are left out of a prediction."""
+"""Ratio of amplitudes up to which a cycle repeats an earlier one, and is left out of a prediction."""
 
 CYCLIC, MONOTONIC = "cycl", "monoton"
-"""In the word that a table has for how a wall was pushed."""
+"""Parts of the word by which a table describes the loading."""
 
 SHOWN = "SW.30"
-"""Walls of this load are shown and not scored: their beam was not as free as it is said."""
+"""Beginning of the names of walls that are shown but not scored: their beam was not as free as reported."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,20 +33,20 @@ class MeasuredWall:
     Parameters
     ----------
     name
-        What the campaign calls it.
+        Name given by the campaign.
     row
         Its row of the table.
     curve : (n, 2) float
-        Displacement at the height of the actuator [m] and horizontal force [N]; rows that are not numbers part the
-        loops of a record. Empty where only the peak is known.
+        Displacement at the height of the actuator [m] and horizontal force [N]; rows that are not numbers separate the
+        loops of a record. Empty if only the peak is known.
     peaks
-        Largest horizontal force [N] to one side, and to the other where it was pushed there.
+        Largest horizontal force [N] to one side, and to the other side if the wall was pushed there.
     modes
-        How it failed, in the words of the table, such as R, TC, F, SL. Empty where that is not said.
+        Failure modes in the words of the table, such as R, TC, F, SL. Empty if none is reported.
     scene_file, cracks
-        Its scene where it is not made from the row, and the drawing of its cracks.
+        Its scene, if that is not made from the row, and the drawing of its cracks.
     is_turned
-        Whether its record went to the negative side and is turned round here, as its cracks are not.
+        Whether its record went to the negative side, and has its signs reversed here; its cracks are not mirrored.
     """
 
     name: str
@@ -59,7 +60,7 @@ class MeasuredWall:
 
     @property
     def reference(self) -> str:
-        """Where it was published."""
+        """Publication of the test."""
         return self.row.text("reference") or "–"
 
     @property
@@ -68,27 +69,27 @@ class MeasuredWall:
         said = self.row.text("cyclic / monotonic").casefold()
         if CYCLIC in said or MONOTONIC in said:
             return CYCLIC in said
-        return min(self.reach) > BOTH * max(self.reach)
+        return min(self.reach) > TWO_SIDED * max(self.reach)
 
     @property
     def reach(self) -> tuple[float, float]:
-        """How far its curve goes to the positive and to the negative side [m]."""
+        """Largest displacement of its curve to the positive and to the negative side [m]."""
         moved = np.append(self.curve[:, 0], 0.0)
         return float(np.nanmax(moved)), -float(np.nanmin(moved))
 
     @property
     def is_scored(self) -> bool:
-        """Whether it counts."""
+        """Whether it is scored."""
         return not f"{self.name}.".startswith(f"{SHOWN}.")
 
     @property
     def peak(self) -> float | None:
-        """Its strength [N]: the mean of both sides where it was pushed to both."""
+        """Its strength [N]: the mean of both sides if it was pushed to both."""
         return float(np.mean(self.peaks)) if self.peaks else None
 
     @property
     def path(self) -> tuple[float, ...]:
-        """Displacements [m] that the actuator was taken to one after the other; empty where no curve says so."""
+        """Displacements [m] to which the actuator was moved one after the other; empty without a curve."""
         moved = self.curve[~np.isnan(self.curve[:, 0]), 0]
         if not len(moved):
             return ()
@@ -98,7 +99,7 @@ class MeasuredWall:
 
 
 def turning_points(moved: Array) -> list[float]:
-    """Where a record of displacements ``(n,)`` turns back, and its end."""
+    """Turning points of a record of displacements ``(n,)``, and its end."""
     least = SWING * float(np.ptp(moved)) / 2
     turns, extreme, sense = list[float](), float(moved[0]), 0.0
     for x in moved.tolist():
@@ -112,10 +113,10 @@ def turning_points(moved: Array) -> list[float]:
 
 
 def growing(turns: list[float]) -> tuple[float, ...]:
-    """The first of several cycles of one size: turns that go farther than any before, and the one after each.
+    """The first of several cycles of one size: turning points farther than any before, and the next one after each.
 
-    Where those between two to one side were left out, the second one takes the first one's place. Where the record goes
-    on, the last one is let go back, if no farther than to rest: that closes the largest loop.
+    If the turns between two on the same side were left out, the second one replaces the first. If the record continues,
+    the last turn is followed by the unloading, at most to zero displacement, which closes the largest loop.
     """
     kept, last, farthest, owed = list[float](), -1, 0.0, False
     for k, turn in enumerate(turns):

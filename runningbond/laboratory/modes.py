@@ -1,10 +1,10 @@
-"""How a wall fails, read where a model sees it fail: where the force has fallen to 0.8, else at the end of the way.
+"""Failure mode of a wall, read where the force has fallen to 0.8 of the largest, else at the end of the path.
 
-If its toe is broken as far as can be seen, crushed or split by 0.1 mm, toes crush (R/TC): what reports name so. Under a
-beam that is kept at its height a wall cannot rock; there toes are the ends of its strut, and do not count. The beam's
-point at the actuator's height moves by U. If at least half of that comes of the beam's rotation ω over the height H,
-|ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on the mean over its length, the
-wall slides there (SL). Else the motion is spread over the steps of a diagonal (F).
+If the toe is visibly broken, crushed or split by 0.1 mm, the mode is toe crushing (R/TC), as reports call it. Under a
+beam that is kept at its height a wall cannot rock; its toes are then the ends of its strut, and do not count. The
+beam's point at the actuator's height moves by U. If at least half of U comes from the beam's rotation ω over the height
+H, |ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on average over its length, the
+wall slides there (SL). Else the motion is distributed over the steps of a diagonal (F).
 """
 
 from collections.abc import Iterable
@@ -19,21 +19,21 @@ from runningbond.scene import Array, Scene
 
 ROCKING, DIAGONAL, SLIDING = "R/TC", "F", "SL"
 GROUPS = {"R": ROCKING, "TC": ROCKING, "F": DIAGONAL, "S": DIAGONAL, "DT": DIAGONAL, "SL": SLIDING}
-"""Modes by the words of the tables; toes crush where walls rock."""
+"""Modes by the words of the tables; toe crushing belongs to rocking."""
 
 HALF = 0.5
 
 VISIBLE = 1e-4
-"""Width of a crack that is seen and drawn [m]."""
+"""Width above which a crack is visible and drawn [m]."""
 
 
 def measured_modes(words: Iterable[str]) -> tuple[str, ...]:
-    """Modes that the words of a report name; words of others are passed over."""
+    """Failure modes named in a report; other words are ignored."""
     return tuple(dict.fromkeys(GROUPS[word] for word in words if word in GROUPS))
 
 
 def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
-    """How the wall fails; None where nothing moves."""
+    """Failure mode of an outcome; None if nothing moves."""
     motion = outcome.motion
     if scene.beam is None or scene.beam.block is None or not len(motion) or not motion.any():
         return None
@@ -54,7 +54,7 @@ def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
 
 
 def bed_slips(scene: Scene, motion: Array) -> list[float]:
-    """Mean slip of each bed joint over the wall's whole length [m], in a motion ``(nb, 3)``."""
+    """Mean slip of each bed joint over the wall's whole length [m], for a motion ``(nb, 3)``."""
     points, bed = wall_points(scene), scene.joints.is_bed
     _, slip = rigid_jumps(scene.blocks, points, motion)
     level = np.round(points.position[:, 1] / scene.blocks.tolerance).astype(int)

@@ -1,4 +1,4 @@
-"""The page of the laboratory: error against experiment over cost, scores, a card a wall, and sources."""
+"""The page of the laboratory: error against experiment over cost, scores, one card per wall, and sources."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -39,7 +39,7 @@ LEGEND = (
 
 
 def write_laboratory(predictions: Sequence[Prediction], folder: Path, refused: Sequence[SceneError] = ()) -> list[Path]:
-    """Draw and write the page into a folder, with what walls were refused for; the files that were written."""
+    """Write the page and its charts into a folder, with the reasons for refused walls; returns the written files."""
     sums = totals(predictions)
     blocks: list[Block] = ["# The laboratory: measured walls, predicted blind", *verdicts(sums)]
     blocks += [f"**Not predicted**: {error}" for error in refused]
@@ -60,7 +60,7 @@ def write_laboratory(predictions: Sequence[Prediction], folder: Path, refused: S
 
 
 def _pictured(folder: Path) -> set[Path]:
-    """Pictures of the page that is in a folder already, if there is one."""
+    """Pictures of walls of an earlier page in the folder, if there is one."""
     page = folder / f"{NAME}.md"
     text = page.read_text(encoding="utf-8", errors="replace") if page.is_file() else ""
     return {folder / name for name in re.findall(r"^!\[.*\]\(<?(wall-[^/\\\n]+\.png)>?\)$", text, re.MULTILINE)}
@@ -82,7 +82,7 @@ def _chart(predictions: Sequence[Prediction], folder: Path) -> Picture:
 
 
 def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
-    """ΔV, a row a wall and a column a model."""
+    """Table of ΔV, one row per wall and one column per model."""
     rungs, rows = _rungs(predictions), list[list[str]]()
     for wall in _walls(predictions):
         errors = {each.rung.name: percent(each.error, "+") for each in predictions if each.wall is wall}
@@ -93,7 +93,7 @@ def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
 
 
 def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
-    """Every score, a row a wall and model."""
+    """Table of all scores, one row per wall and model."""
     ratios_of = {
         "stiffness": "stiffness_ratio",
         "at peak": "peak_displacement_ratio",
@@ -117,7 +117,7 @@ def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
 def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[Block]:
     caption = "Measured and predicted curves"
     if drawn := drawn_by(own):
-        caption += f", and the motion in which {drawn.rung.name} sees it fail"
+        caption += f", and the motion of failure by {drawn.rung.name}"
     if wall.cracks:
         caption += ", beside the cracks"
     picture = write_picture(card(own), folder / f"wall-{wall.name}.png", caption + ".", dots=150)
@@ -131,7 +131,7 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
 
 
 def _parameters(one: Prediction) -> Sheet:
-    """All that a model is handed of materials, under the names of the scene file."""
+    """Table of all material parameters that a model receives, by their keys in the scene file."""
     materials: list[BlockMaterial | JointMaterial] = [*one.scene.block_materials, *one.scene.joint_materials]
     rows = [
         [f"{table_of(material)}.{key}", f"{value:.5g}"] for material in materials for key, value in _numbers(material)
@@ -140,7 +140,7 @@ def _parameters(one: Prediction) -> Sheet:
 
 
 def _numbers(part: Any) -> Iterator[tuple[str, float]]:
-    """Numbers of a material that are not their defaults, and of what stands in it, by their keys."""
+    """Numbers of a material and of its parts that differ from their defaults, by key."""
     for entry in fields(part):
         value = getattr(part, entry.name)
         if is_dataclass(value):
@@ -150,7 +150,7 @@ def _numbers(part: Any) -> Iterator[tuple[str, float]]:
 
 
 def _rig(wall: MeasuredWall, one: Prediction) -> str:
-    """Size and loads in words."""
+    """Size and loads, as text."""
     beam = one.scene.beam
     (left, bottom), (right, top) = one.scene.blocks.extent(one.scene.masonry)
     pressed = -beam.force[1] if beam else vertical_load(wall)

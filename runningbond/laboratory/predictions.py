@@ -1,4 +1,4 @@
-"""Predictions of walls: every rung on every wall, in parallel and kept, and the scores of each."""
+"""Predictions of walls: every rung on every wall, run in parallel and stored, and their scores."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,17 +23,18 @@ from .rig import scene_of
 from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, marks_of, ratio
 
 ARRIVED = 0.99
-"""Part of the path's way after which a wall has been followed to its end."""
+"""Share of the path's length above which a wall has been followed to the end of the path."""
 
 FOLLOWED, INAPPLICABLE = "followed", "inapplicable"
-"""Statuses beside those of outcomes: the wall was taken along the whole path without an answer; a model refuses it."""
+"""Statuses in addition to those of outcomes: followed along the whole path without an answer; the model refuses the
+wall."""
 
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """What one rung says of one wall.
+    """Prediction of one wall by one rung.
 
-    `outcome` is None where the rung does not apply to the wall, for a `reason`.
+    `outcome` is None if the rung does not apply to the wall, with a `reason`.
     """
 
     wall: MeasuredWall
@@ -44,7 +45,7 @@ class Prediction:
 
     @property
     def status(self) -> str:
-        """That of the outcome, unless the wall was followed to the path's end without one."""
+        """Status of the outcome, or `FOLLOWED` if the wall was followed to the path's end without an answer."""
         if self.outcome is None:
             return INAPPLICABLE
         return FOLLOWED if self.outcome.status in ("undecided", "unbounded") and self._arrived else self.outcome.status
@@ -59,22 +60,22 @@ class Prediction:
 
     @property
     def is_answer(self) -> bool:
-        """Whether there is something to score."""
+        """Whether there is a result to score."""
         return self.status in ("collapse", FOLLOWED)
 
     @property
     def curve(self) -> Array:
-        """Displacement [m] and force [N], positive as in the test."""
+        """Displacement [m] and force [N], with the signs of the test."""
         drive = self.scene.drive
         if self.outcome is None or drive is None or not drive.path:
             return np.zeros((0, 2))
-        # Outcomes are positive along the first move, and so are tests to one side, whichever it was.
+        # Outcomes are positive in the direction of the first push, and so are one-sided tests, whichever side it was.
         is_to_both = any(goal < 0 for goal in cycle_ends(self.wall.path))
         return np.asarray(self.outcome.curve * (np.sign(drive.force[0]) if is_to_both else 1.0))
 
     @cached_property
     def marks(self) -> Marks | None:
-        """What is read off its curve."""
+        """Values read from its curve."""
         return marks_of(self.curve, cyclic=self.wall.is_cyclic) if self.is_answer else None
 
     @property
@@ -87,13 +88,13 @@ class Prediction:
 
     @property
     def error(self) -> float | None:
-        """ΔV."""
+        """ΔV, the relative error of the strength."""
         over = ratio(self.strength, self.wall.peak)
         return None if over is None else over - 1
 
     @property
     def mode(self) -> str | None:
-        """How it fails."""
+        """Predicted failure mode."""
         if self.rung.is_by_hand and self.is_answer:
             loads = by_hand(self.scene)
             formula = self.rung.name if self.rung.name in loads else min(loads, key=lambda name: loads[name])
@@ -102,7 +103,7 @@ class Prediction:
 
     @property
     def is_mode_right(self) -> bool | None:
-        """Whether the report names that mode; None where one of both is not known."""
+        """Whether the report names the predicted mode; None if either is unknown."""
         known = measured_modes(self.wall.modes)
         return self.mode in known if self.mode and known else None
 
@@ -139,7 +140,7 @@ class Prediction:
         }
 
     def _cycles(self) -> float | None:
-        """Mean of what is predicted over what was measured in the peaks of cycles."""
+        """Mean ratio of predicted to measured peaks of cycles."""
         if not self.wall.is_cyclic or not self.marks:
             return None
         ends = cycle_ends(self.wall.path)
@@ -151,7 +152,7 @@ class Prediction:
 def scenes_of(
     walls: Sequence[MeasuredWall], rungs: Sequence[Rung], refuse: Callable[[SceneError], None] = raised
 ) -> dict[Cell, Scene]:
-    """The scene of every wall for every rung; `refuse` is told of walls that have none, as in `read_folder`."""
+    """The scene of every wall for every rung; `refuse` is called for walls without one, as in `read_folder`."""
     scenes: dict[Cell, Scene] = {}
     for wall in walls:
         try:
@@ -173,12 +174,12 @@ def predict(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> tuple[list[Prediction], Campaign]:
-    """Predict walls with rungs, on their scenes; what a folder holds of the same computation is taken from there.
+    """Predict walls with rungs, on their scenes; stored results of the same computation are reused from the folder.
 
-    Walls whose scenes differ in their titles alone are computed once, and answer alike. Parameters and errors as of
+    Walls whose scenes differ only in their titles are computed once and share the result. For parameters and errors see
     `runningbond.campaigns.run_tasks`.
     """
-    # The dearest first, or they would be left to one core in the end.
+    # The most expensive first; otherwise they would end up on a single core at the end.
     cells = [(wall, rung) for rung in reversed(rungs) for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
     reasons = {
         (wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name], is_cyclic=wall.is_cyclic)
@@ -209,7 +210,7 @@ def predict(
 
 
 def _computed(models: Mapping[Cell, Model], scenes: Mapping[Cell, Scene]) -> dict[Cell, Cell]:
-    """The cell whose answer each cell has: the first one of its model whose scene is the same but for its title."""
+    """The cell from which each cell takes its result: the first of its model with the same scene up to the title."""
     first: dict[str, Cell] = {}
     return {
         cell: first.setdefault(fingerprint(replace(scenes[cell], title=""), model, TOLERANCE), cell)

@@ -1,4 +1,4 @@
-"""The scene of a tested wall: its own file, or what its row of the table and its stone say of it."""
+"""The scene of a tested wall: from its own file, or from its row of the table and the data of its stone."""
 
 import math
 import re
@@ -15,45 +15,46 @@ from runningbond.scene.file import read_description
 
 from .formulas import pressed
 from .measured import MeasuredWall
-from .stones import SHARE, SHEAR_ENERGIES, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
+from .stones import POISSON, SHEAR_ENERGIES, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
 
 GRAVITY = 9.81
 LOAD_IN_NAME = re.compile(r"^[^\W\d_]+\d*[._ -](\d+)(?!\d)")
 FAR = 0.03
-"""Displacement over the actuator's height to which a wall without a curve is pushed."""
+"""Displacement, relative to the actuator's height, to which a wall without a curve is pushed."""
 
 STIFFER = 10
-"""How many times as stiff as what they join inner joints are, where that deforms itself."""
+"""Stiffness of inner joints relative to the parts of blocks that they join, if these parts deform."""
 
-ALIKE = 1.15
-"""Factor between the load that a wall's name tells and that of the table up to which both are one load."""
+SAME_LOAD = 1.15
+"""Ratio of the load in a wall's name to that of the table, or its inverse, up to which both are the same load."""
 
 MOST_BLOCKS = 5000
-"""Blocks of a wall that fits into a laboratory."""
+"""Largest number of blocks of a laboratory wall; more of them indicate a wrong unit."""
 
 LEAST_BEAM = 0.2
-"""Least height of the beam [m] where the actuator's height does not give it; of no influence, for it is stiff."""
+"""Smallest height of the beam [m], if the actuator is too low to define one; without influence because the beam is
+stiff."""
 
 
 CRUSHING = ("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure")
-SOUND: dict[str, Any] = {one.name: one.default for one in fields(JointMaterial) if one.name in CRUSHING}
-"""What a joint that does not crush says of crushing."""
+NO_CRUSHING: dict[str, Any] = {one.name: one.default for one in fields(JointMaterial) if one.name in CRUSHING}
+"""Crushing parameters of a joint that does not crush."""
 
 
 @dataclass(frozen=True)
 class Features:
-    """What a scene has of its wall; models are asked with more and more of it.
+    """Features of a wall that its scene includes; the rungs of the ladder include more and more of them.
 
     Parameters
     ----------
     driven
-        Whether the beam is taken along the test's path; else it is pushed by a force of λ newtons.
+        Whether the beam is displaced along the test's path; else it is pushed by a force of λ newtons.
     closes, crushes, splits
-        Whether joints get stiffer with pressure, whether they crush, and whether blocks may split on their axis.
+        Whether joints stiffen with pressure, whether they crush, and whether blocks may split on their axis.
     deformable
-        Whether blocks deform themselves, so that joints have what is left of the wall's stiffness.
+        Whether blocks deform, so that joints get only what remains of the wall's compliance.
     parts
-        Into how many parts blocks may crack over their height. Inner joints between as many leave them no softer.
+        Number of parts into which blocks may crack over their height; inner joints are stiff enough not to soften them.
     """
 
     driven: bool = True
@@ -65,7 +66,7 @@ class Features:
 
 
 def scene_of(wall: MeasuredWall, features: Features) -> Scene:
-    """The scene of a wall, with some of its features."""
+    """The scene of a wall, with the given features."""
     if wall.scene_file is None:
         scene = scene_from_dict(_tables(wall, features))
     else:
@@ -74,7 +75,7 @@ def scene_of(wall: MeasuredWall, features: Features) -> Scene:
 
 
 def _read(wall: MeasuredWall, path: Path, features: Features) -> Scene:
-    """The scene of a wall's own file, with cracks where it splits, along its path or pushed by a force of 1 N."""
+    """The scene of a wall's own file: with inner joints if it splits, along its path or pushed by a force of 1 N."""
     tables = read_description(path)
     if not features.splits:
         tables.pop("inner_joint", None)
@@ -91,8 +92,8 @@ def _read(wall: MeasuredWall, path: Path, features: Features) -> Scene:
         if is_wrong:
             told = f"{remedy}; λ is the force that a tested wall is pushed with"
             raise SceneError(f"{path.name}: {key}", told)
-    # A force pushes to the side that the wall is pushed to first: it may bear less there than on the other one. It is
-    # of 1 N whatever the file has, so that λ is the wall's strength in newtons.
+    # The force acts to the side to which the wall is pushed first, where its strength may be lower than on the other
+    # side. It is 1 N whatever the file has, so that λ is the wall's strength in newtons.
     side = math.copysign(1.0, scene.drive.force[0])
     at = {} if scene.drive.at is None else {"at": scene.drive.at}
     tables["beam"] = beam | {"drive": {"force": [side, 0]} | at}
@@ -100,20 +101,20 @@ def _read(wall: MeasuredWall, path: Path, features: Features) -> Scene:
 
 
 def _simplified(scene: Scene, features: Features) -> Scene:
-    """The scene without joints that crush, or that close, where these are not asked for."""
+    """The scene without joints that crush, or that stiffen with pressure, unless these features are requested."""
     (left, _), (right, _) = scene.blocks.extent(scene.masonry)
     thickness = float(np.average(scene.thickness_of_blocks[scene.masonry], weights=scene.blocks.area[scene.masonry]))
     pressure = max(pressed(scene), 0.0) / ((right - left) * thickness)
     materials = scene.joint_materials
     if not features.crushes:
-        materials = tuple(replace(each, **SOUND) for each in materials)
+        materials = tuple(replace(each, **NO_CRUSHING) for each in materials)
     if not features.closes:
         materials = tuple(_as_stiff_as_under(pressure, each) for each in materials)
     return replace(scene, joint_materials=materials)
 
 
 def _as_stiff_as_under(pressure: float, material: JointMaterial) -> JointMaterial:
-    """A joint that does not close, as stiff as one that does is under a pressure [Pa]."""
+    """A joint of constant stiffness, equal to that of a stiffening joint under a pressure [Pa]."""
     if material.closure is None:
         return material
     normal = float(stiffness_at(pressure, closure_curve(material)))
@@ -134,7 +135,7 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
     joint: dict[str, Any] = {
         "friction": stone.friction,
         "normal_stiffness": start if features.closes else normal,
-        "shear_stiffness": normal / (2 * (1 + SHARE)),
+        "shear_stiffness": normal / (2 * (1 + POISSON)),
     }
     if features.closes:
         joint["closure"] = {"growth": growth, "stiffest": stone.young / height}
@@ -155,7 +156,7 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
             "height": top,
             "first_course": stone.first_course,
         },
-        "block": {"density": UNIT_WEIGHT / GRAVITY, "young": stone.young, "poisson": SHARE},
+        "block": {"density": UNIT_WEIGHT / GRAVITY, "young": stone.young, "poisson": POISSON},
         "joint": joint,
         "support": {"kind": "base"},
         "load": {"gravity": GRAVITY},
@@ -173,7 +174,7 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
 
 
 def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
-    """A potential crack on the axis of a block: as stiff as its halves, or stiff beside them where they deform."""
+    """A potential crack on the axis of a block: as stiff as its halves, or `STIFFER` times that if they deform."""
     normal = (STIFFER if deformable else 1) * stone.young / (width / 2)
     return {
         "friction": stone.friction,
@@ -182,12 +183,12 @@ def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
         "fracture_energy_1": SPLITTING_ENERGY,
         "fracture_energy_2": SHEAR_ENERGIES * SPLITTING_ENERGY,
         "normal_stiffness": normal,
-        "shear_stiffness": normal / (2 * (1 + SHARE)),
+        "shear_stiffness": normal / (2 * (1 + POISSON)),
     }
 
 
 def _stiffened(scene: Scene, parts: int) -> Scene:
-    """Inner joints at least as stiff beside parts of a block as `_crack` has them beside halves of one."""
+    """The scene with inner joints stiffened, relative to parts of a block, as in `_crack` relative to its halves."""
     inner = scene.inner_joint
     if inner is None:
         return scene
@@ -199,7 +200,7 @@ def _stiffened(scene: Scene, parts: int) -> Scene:
 
 
 def with_inner_stiffness(scene: Scene, times: float) -> Scene:
-    """The scene with inner joints `times` as stiff."""
+    """The scene with the stiffness of its inner joints multiplied by `times`."""
     inner = scene.inner_joint
     if inner is None:
         return scene
@@ -209,8 +210,8 @@ def with_inner_stiffness(scene: Scene, times: float) -> Scene:
 
 
 def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
-    """Number of courses: of the actuator's height for walls drawn as high as that, else of the table's height."""
-    # As high as the actuator is no more than a course above what the table has.
+    """Number of courses: by the actuator's height for walls drawn as high as that, else by the table's height."""
+    # Walls are as high as the actuator only if that is within a course of the table's height.
     at, tall = wall.row.number("H0"), wall.row.number("H")
     column = "H0" if stone.is_square and abs(at - tall) < 1.02 * height else "H"
     tall = wall.row.number(column)
@@ -227,7 +228,7 @@ def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
 def vertical_load(wall: MeasuredWall) -> float:
     """The load on the beam [N]: Ntot less the weight of the wall, else σ0 L t, else the number in the wall's name.
 
-    A number in the name that is nearly what the table has is what the wall was tested under.
+    If the number in the name is nearly equal to this load, it is used instead: the wall was tested under it.
     """
     row, name = wall.row, LOAD_IN_NAME.match(wall.name)
     named, stress = 1e3 * float(name[1]) if name else 0.0, row.optional("σ0,pc")
@@ -237,4 +238,4 @@ def vertical_load(wall: MeasuredWall) -> float:
         load = row.number("Ntot") - UNIT_WEIGHT * row.number("L") * row.number("t") * row.number("H")
     if load <= 0:
         raise SceneError(row.key("Ntot"), "must be more than the weight of the wall", row.text("Ntot"))
-    return named if named / ALIKE < load < named * ALIKE else load
+    return named if named / SAME_LOAD < load < named * SAME_LOAD else load

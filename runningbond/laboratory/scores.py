@@ -1,7 +1,7 @@
-"""How a prediction is scored: strength, stiffness, displacements, and of cycles what they dissipate and leave.
+"""Scores of a prediction: strength, stiffness, displacements and, for cycles, energy and residual displacement.
 
-Curves are displacements [m] and forces [N], ``(n, 2)``; rows that are not numbers part the loops of a record. A number
-that does not exist is None.
+Curves are displacements [m] and forces [N], ``(n, 2)``; rows that are not numbers separate the loops of a record. A
+number that does not exist is None.
 """
 
 from collections.abc import Sequence
@@ -17,32 +17,33 @@ from runningbond.scene import Array
 from .measured import LARGER, SWING, turning_points
 
 SECANT = 0.3
-"""Share of the strength at which the stiffness is read."""
+"""Share of the strength at which the secant stiffness is read."""
 
 UNLOADED = 0.01
-"""Share of the largest displacement by which a record to one side goes back where it was unloaded, and is no noise."""
+"""Share of the largest displacement by which a one-sided record goes back if it is unloaded; less is noise."""
 
 ROUNDING = 1e-9
-"""Share of the work done to and fro below which the sum of it is rounding."""
+"""Net work of a loop, relative to the sum of its absolute works, below which it is rounding error."""
 
 
 @dataclass(frozen=True)
 class Marks:
-    """What is read off a curve.
+    """Values read from a curve.
 
     Parameters
     ----------
     strength
-        Largest force [N]; of a curve to both sides the mean of both.
+        Largest force [N]; for a curve to both sides, the mean of both.
     stiffness
-        Secant at 0.3 of the strength [N/m]; of a curve to both sides, of the first branch from one to the other.
+        Secant at 0.3 of the strength [N/m]; for a curve to both sides, that of the first branch from one side to the
+        other.
     at_peak, at_loss
-        Displacements [m] of the largest force, and where it has first fallen to 0.8 of it, on the side pushed to first;
-        of a curve to both sides, where it has fallen so far for good.
+        Displacements [m] at the largest force, and where the force has first fallen to 0.8 of it, on the side pushed to
+        first; for a curve to both sides, where it has finally fallen so far.
     loops
-        Of a curve to both sides, as `loops` has them.
+        For a curve to both sides, the result of `loops`.
     residual
-        Largest displacement [m] at which the force has come to zero, of a curve to both sides.
+        Largest displacement [m] at which the force has returned to zero, for a curve to both sides.
     """
 
     strength: float
@@ -54,14 +55,14 @@ class Marks:
 
 
 class Loop(NamedTuple):
-    """A loop of a record: how far it goes to the positive side [m], and the work of the force along it [J]."""
+    """A loop of a record: its largest displacement to the positive side [m], and the work of the force along it [J]."""
 
     reach: float
     work: float
 
 
 def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
-    """What there is to read off a curve; None without one, or without a force along the way."""
+    """Values that can be read from a curve; None if there is no curve, or no force along it."""
     known = curve[~np.isnan(curve).any(axis=1)]
     if cyclic and _starts_left(known):
         curve, known = -curve, -known
@@ -78,9 +79,9 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
     side = sides[0]
     top = int(side[:, 1].argmax())
     after, borne = side[top:], LOSS * float(side[top, 1])
-    if cyclic:  # a reload may pass below what the envelope bears
+    if cyclic:  # reloading may pass below the envelope
         after = after[int(np.flatnonzero(after[:, 1] >= borne)[-1]) :]
-    else:  # what is unloaded loses force by going back, if only as far as noise does
+    else:  # without unloading, which reduces the force as the displacement goes back, even by noise
         after = after[after[:, 0] >= np.maximum.accumulate(after[:, 0])]
     loss = first_crossing(after * (1, -1), -borne)
     both = (tuple(loops(curve)), residual(curve)) if cyclic else ((), None)
@@ -88,29 +89,29 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
 
 
 def _pushed(*sides: Array) -> list[Array]:
-    """Curves to the sides that a wall was pushed to: to one it was not where it came back to rest but for noise."""
+    """Curves to the sides to which a wall was pushed, without a side reached only by noise on the way back to rest."""
     reach = [float(side[:, 0].max()) for side in sides]
     return [side for side, far in zip(sides, reach, strict=True) if far > SWING * max(reach)]
 
 
 def _from_rest(curve: Array) -> Array:
-    """A curve to one side, which starts at rest even where its record does not."""
+    """A one-sided curve that starts at rest, even if its record does not."""
     return np.concatenate([np.zeros((1, 2)), curve]) if curve[0, 0] > 0 and curve[0, 1] > 0 else curve
 
 
 def _onward(curve: Array) -> Array:
-    """A curve to one side without what it did while it was unloaded and loaded again."""
+    """A one-sided curve without its unloading and reloading."""
     moved = curve[:, 0]
     return np.asarray(curve[moved >= np.maximum.accumulate(moved) - UNLOADED * moved.max()])
 
 
 def _starts_left(curve: Array) -> bool:
-    """Whether a record first turns round on the negative side."""
+    """Whether the first turning point of a record is on the negative side."""
     return bool(len(curve)) and turning_points(curve[:, 0])[0] < 0
 
 
 def backbone(curve: Array) -> Array:
-    """The points of a curve that go farther to the positive side than any before, from rest."""
+    """The points of a curve that are farther to the positive side than all points before, starting from rest."""
     forward = np.concatenate([[[0.0, 0.0]], curve])
     farthest = np.maximum.accumulate(forward[:, 0])
     new = np.append(True, (forward[1:, 0] > farthest[:-1]) & (forward[1:, 1] > 0))
@@ -118,7 +119,7 @@ def backbone(curve: Array) -> Array:
 
 
 def first_crossing(curve: Array, force: float) -> float | None:
-    """Displacement at which a force is first reached, between two points of a curve; None where it is not."""
+    """Displacement at which a force is first reached, interpolated between points of a curve; else None."""
     reached = np.flatnonzero(curve[:, 1] >= force)
     if not len(reached):
         return None
@@ -132,9 +133,9 @@ def first_crossing(curve: Array, force: float) -> float | None:
 def swing(curve: Array, force: float) -> float | None:
     """Displacement over which a cycle first runs from a force to its opposite; None if it never does.
 
-    Both lie on one branch, so that what friction has left behind does not count.
+    Both forces lie on one branch, to exclude residual displacements due to friction.
     """
-    start: tuple[float, float] | None = None  # the side on which the force was last beyond, and where it ceased to be
+    start: tuple[float, float] | None = None  # side on which the force was last exceeded; where it no longer was
     for (x0, y0), (x1, y1) in pairwise(curve.tolist()):
         if abs(y0) >= force > abs(y1) or (abs(y0) >= force and abs(y1) >= force and y0 * y1 < 0):
             side = float(np.sign(y0))
@@ -148,9 +149,9 @@ def swing(curve: Array, force: float) -> float | None:
 def loops(curve: Array) -> list[Loop]:
     """The loops of a record, in its order.
 
-    A loop leads from where the force vanishes on its way up, and springs hold nothing, to where it next does; one more
-    closes a part of the record that comes back to where it began. What is left at the ends of other parts is none, nor
-    is what goes no farther than noise, `SWING`.
+    A loop leads from an upward zero crossing of the force, where no elastic energy is stored, to the next one. If a
+    part of the record returns to its start, its ends form one more loop. Ends of other parts, and pieces no longer than
+    noise (`SWING`), are none.
     """
     found = list[Loop]()
     for part in _parts(curve):
@@ -165,9 +166,9 @@ def loops(curve: Array) -> list[Loop]:
 
 
 def energy_ratio(predicted: Sequence[Loop], measured: Sequence[Loop]) -> float | None:
-    """Work of predicted loops over that of the measured ones that go as far, to `LARGER`; of several alike, the first.
+    """Work of predicted loops over that of measured loops of equal reach, to within `LARGER`.
 
-    None where no loop goes as far as a measured one.
+    Of several loops of equal reach the first counts. None if no predicted loop goes as far as a measured one.
     """
     own, theirs, farthest = 0.0, 0.0, 0.0
     for loop in measured:
@@ -178,7 +179,7 @@ def energy_ratio(predicted: Sequence[Loop], measured: Sequence[Loop]) -> float |
 
 
 def _parts(curve: Array) -> list[Array]:
-    """Stretches of a record between rows that are no numbers; those that go on where one ended are one."""
+    """Stretches of a record between rows that are not numbers; a stretch that starts where one ended continues it."""
     parted = np.flatnonzero(np.isnan(curve).any(axis=1))
     parts = list[Array]()
     for stretch in np.split(curve, parted):
@@ -191,7 +192,7 @@ def _parts(curve: Array) -> list[Array]:
 
 
 def _with_zeros(part: Array) -> Array:
-    """A stretch of a record with a point wherever the force changes its sign."""
+    """A stretch of a record with points inserted where the force changes its sign."""
     (x0, y0), (x1, y1) = part[:-1].T, part[1:].T
     k = np.flatnonzero(y0 * y1 < 0)
     zeros = np.column_stack([x0[k] - y0[k] * (x1[k] - x0[k]) / (y1[k] - y0[k]), np.zeros(len(k))])
@@ -199,7 +200,7 @@ def _with_zeros(part: Array) -> Array:
 
 
 def _rises(part: Array) -> list[int]:
-    """Points where the force vanishes on its way up, after it was well below nothing, or at the beginning."""
+    """Upward zero crossings of the force after it was clearly negative, or at the beginning."""
     least = SWING * float(np.abs(part[:, 1]).max())
     rises, below = list[int](), abs(part[0, 1]) < least
     for k, force in enumerate(part[:, 1].tolist()):
@@ -210,14 +211,14 @@ def _rises(part: Array) -> list[int]:
 
 
 def _work(piece: Array) -> float:
-    """Work of the force [J] along a piece, by trapezia; what comes back but for rounding was not dissipated."""
+    """Work of the force [J] along a piece, by the trapezoidal rule; zero if the net work is only rounding error."""
     steps = np.diff(piece[:, 0]) * (piece[1:, 1] + piece[:-1, 1]) / 2
     work = float(steps.sum())
     return work if abs(work) > ROUNDING * float(np.abs(steps).sum()) else 0.0
 
 
 def residual(curve: Array) -> float | None:
-    """Largest displacement [m] at which the force comes to zero, recorded or between two points; None without one."""
+    """Largest displacement [m] at which the force returns to zero, recorded or interpolated; None if it does not."""
     zeros = list[float]()
     for (x0, y0), (x1, y1) in pairwise(curve.tolist()):
         if y0 * y1 < 0 or (y1 == 0 and abs(y0) > 0):
@@ -226,14 +227,14 @@ def residual(curve: Array) -> float | None:
 
 
 def cycle_ends(path: tuple[float, ...]) -> tuple[float, ...]:
-    """Displacements of a path to which a wall is pushed; not to where it is let go back, nor to rest but for noise."""
+    """Displacements of a path to which a wall is pushed; unloading, to rest or beyond it by noise, does not count."""
     return tuple(
         goal for start, goal in pairwise((0.0, *path)) if (goal - start) * goal > 0 and abs(goal) > SWING * abs(start)
     )
 
 
 def cycle_peaks(curve: Array, path: tuple[float, ...]) -> list[float]:
-    """Force [N] of largest size on the way to each displacement of a path, as far as a curve goes along it."""
+    """Force [N] of largest magnitude on the way to each displacement of a path, as far as a curve follows the path."""
     known = curve[~np.isnan(curve).any(axis=1)]
     peaks, start = list[float](), 0
     for goal in path:
@@ -247,5 +248,5 @@ def cycle_peaks(curve: Array, path: tuple[float, ...]) -> list[float]:
 
 
 def ratio(predicted: float | None, measured: float | None) -> float | None:
-    """A predicted number over the measured one; None where one of them does not exist."""
+    """A predicted number over the measured one; None if either does not exist."""
     return predicted / measured if predicted is not None and measured else None

@@ -1,7 +1,7 @@
-"""What the campaigns measured on parts of their walls: on stones, on prisms, and on walls before they were pushed.
+"""Measurements of the campaigns on parts of their walls: on stones, on prisms, and on walls before they were pushed.
 
-Nothing here is fitted to a test in shear. Numbers are those of the laboratory's README and its table, from Lourenço et
-al. (2005), Vasconcelos (2005) and Vasconcelos & Lourenço (2009) by way of Vanin et al. (2017), unless it is said
+Nothing here is fitted to a shear test. Numbers are from the laboratory's README and its table, which take them from
+Lourenço et al. (2005), Vasconcelos (2005) and Vasconcelos & Lourenço (2009) via Vanin et al. (2017), unless stated
 otherwise.
 """
 
@@ -17,22 +17,23 @@ from runningbond.scene import SceneError
 from runningbond.scene.ranges import suggestion
 
 UNIT_WEIGHT = 20e3
-"""Of the walls [N/m³]: what `Ntot` of the table adds to the number in their names, over their volume."""
+"""Unit weight of the walls [N/m³]: `Ntot` of the table less the load in their names, divided by their volume."""
 
-SHARE = 0.2
-"""Poisson's ratio of stone; no campaign gives it."""
+POISSON = 0.2
+"""Poisson's ratio of stone; no campaign reports it."""
 
 SPLITTING_ENERGY = 100.0
-"""Fracture energy in opening of stone [J/m²], for all walls: 0.1 N/mm. Not measured here. Published ones of sandstone
-and granite are about 0.05 to 0.25 N/mm, Vasconcelos, Lourenço, Alves & Pamplona (2008) among them; from memory."""
+"""Mode I fracture energy of stone [J/m²], for all walls: 0.1 N/mm. Not measured by the campaigns. Published values for
+sandstone and granite are about 0.05 to 0.25 N/mm, for example Vasconcelos, Lourenço, Alves & Pamplona (2008); from
+memory."""
 
 SHEAR_ENERGIES = 10.0
-"""Fracture energy in shear over that in opening, where no source gives it; usual for interface elements."""
+"""Ratio of mode II to mode I fracture energy if no source reports it; usual for interface elements."""
 
 
 @dataclass(frozen=True)
 class Stone:
-    """A stone, sawn blocks of it, and dry walls of these.
+    """A stone, its sawn blocks, and the dry walls built of them.
 
     Parameters
     ----------
@@ -45,9 +46,9 @@ class Stone:
     moduli
         Young's modulus of walls under vertical loads [Pa], by the mean pressure [Pa].
     first_course
-        What the lowest course starts with.
+        Block with which the lowest course starts.
     is_square
-        Whether the wall is as high as the actuator stands, whatever the table has for its height.
+        Whether the wall is as high as the actuator, whatever height the table has.
     """
 
     friction: float
@@ -61,14 +62,14 @@ class Stone:
 
     @property
     def cohesion(self) -> float:
-        """Shear strength of the sound block [Pa]: √(f_c f_t) / 2, of Coulomb's line through both strengths."""
+        """Shear strength of the intact block [Pa]: √(f_c f_t) / 2, from the Coulomb line through both strengths."""
         return math.sqrt(self.block * self.tensile) / 2
 
     def stiffness(self, block_height: float, *, deformable: bool) -> tuple[float, float]:
-        """Normal stiffness of a bed joint without pressure [Pa/m], and its growth with pressure [1/m].
+        """Normal stiffness of a bed joint at zero pressure [Pa/m], and its growth with pressure [1/m].
 
-        The straight line through E / h of walls under their vertical loads, by least squares. Where blocks deform
-        themselves, their own part is taken off: 1 / k = h (1 / E - 1 / E_b).
+        The least-squares straight line through E / h of walls under their vertical loads. If blocks deform, their
+        compliance is subtracted: 1 / k = h (1 / E - 1 / E_b).
         """
         pressure, modulus = np.array(sorted(self.moduli.items())).T
         stiffness = 1 / (block_height * (1 / modulus - (1 / self.young if deformable else 0.0)))
@@ -100,7 +101,7 @@ STONES = {
 
 
 def find_stone(key: str, name: str) -> Stone:
-    """A stone by its name, as a table has it under some key."""
+    """A stone by its name, which a table has under a key."""
     known = list(STONES)
     if name.casefold() not in known:
         what = (
@@ -111,7 +112,7 @@ def find_stone(key: str, name: str) -> Stone:
 
 
 def sources() -> Sheet:
-    """Every number that is the same for all walls of a stone, with where it comes from."""
+    """Table of all numbers that are common to the walls of a stone, with their sources."""
     rows = []
     for name, stone in STONES.items():
         start, growth = stone.stiffness(0.1 if stone.is_square else 0.15, deformable=False)
@@ -126,7 +127,7 @@ def sources() -> Sheet:
                 "least squares through Epc / h_b",
             ],
             [name, "stiffest joint [MPa/m]", "E_b / h_b", f"E_b = {stone.young / 1e9:g} GPa, of blocks"],
-            [name, "shear stiffness", "k(σ₀) / (2 (1 + ν))", f"isotropy, ν = {SHARE:g}"],
+            [name, "shear stiffness", "k(σ₀) / (2 (1 + ν))", f"isotropy, ν = {POISSON:g}"],
             [name, "strength of joints in compression [MPa]", f"{stone.prism / 1e6:g}", "prisms"],
             [
                 name,

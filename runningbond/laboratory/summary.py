@@ -1,4 +1,4 @@
-"""What predictions add up to, rung by rung, and which of them reaches what the laboratory asks for."""
+"""Summary of the predictions of each rung, and the rungs that meet the requirements of the laboratory."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,32 +13,32 @@ from .formulas import by_hand
 from .predictions import Prediction
 
 MEDIAN, WORST, MODES, FACTOR = 0.10, 0.20, 0.80, 1.5
-"""What is asked for: |ΔV| in the median and at most, share of modes that are right, and a factor of stiffnesses and of
-displacements at the loss of a fifth of the strength."""
+"""Requirements: median and largest |ΔV|, share of correct modes, and largest factor by which stiffnesses, and
+displacements at the loss of a fifth of the strength, may be off."""
 
 
 @dataclass(frozen=True)
 class Total:
-    """What the scored predictions of one rung on walls of one kind add up to.
+    """Summary of the scored predictions of one rung on walls of one kind.
 
     Parameters
     ----------
     kind, model
-        The walls' joints, and the rung.
+        Kind of the walls' joints, and the rung.
     walls, answers
-        How many walls are scored, and of how many it predicts a strength.
+        Number of scored walls, and of those for which the rung predicts a strength.
     median, worst
-        Of |ΔV|; None without an answer.
+        Median and largest |ΔV|; None without an answer.
     modes
-        Share of the modes that are right, of those that are known; None without one.
+        Share of correct modes among the known ones; None if none is known.
     stiffness, drift
-        Largest factor by which a stiffness, and a displacement at the loss, is off; None where none is known.
+        Largest factor by which a stiffness, and a displacement at the loss, is off; None if none is known.
     beaten
-        Walls on which it is nearer than the better of the two formulas worked out by hand.
+        Number of walls on which the rung is nearer to the test than the better of the two hand formulas.
     seconds
-        Median time of the processor.
+        Median CPU time [s].
     is_by_hand
-        Whether it is one of those formulas.
+        Whether the rung is a hand formula.
     """
 
     kind: str
@@ -56,7 +56,7 @@ class Total:
 
     @property
     def reaches(self) -> bool:
-        """Whether it does all that is asked for, on every wall; a formula knows of no stiffness, and does not."""
+        """Whether all requirements are met, on every wall; hand formulas give no stiffness and never meet them."""
         if self.median is None or self.worst is None or self.answers < self.walls:
             return False
         factors = self.stiffness is not None and max(self.stiffness, self.drift or 1.0) <= FACTOR
@@ -64,7 +64,7 @@ class Total:
 
 
 def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
-    """ΔV of each rung that is a model, on the scored walls of each kind that it answers for."""
+    """ΔV of each rung that is a model, on the scored walls of each kind for which it has an answer."""
     groups: dict[tuple[str, str], list[Prediction]] = {}
     for each in predictions:
         if each.wall.is_scored and each.error is not None and each.rung.base:
@@ -79,12 +79,12 @@ def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
 
 
 def kind_of(prediction: Prediction) -> str:
-    """What tables call walls of its kind, by their joints: as their table has it, else as their scene."""
+    """Kind of a wall in tables, by its joints: as in the row of the wall, else as in its scene."""
     return prediction.wall.row.text("joints").casefold() or joints_of(prediction.scene)
 
 
 def totals(predictions: Sequence[Prediction]) -> list[Total]:
-    """Totals of the scored walls, by their kinds and by rungs."""
+    """Totals of the scored walls, by kind of wall and by rung."""
     scored = [each for each in predictions if each.wall.is_scored]
     groups: dict[tuple[str, str], list[Prediction]] = {}
     for each in scored:
@@ -93,7 +93,7 @@ def totals(predictions: Sequence[Prediction]) -> list[Total]:
 
 
 def errors_by_hand(predictions: Sequence[Prediction]) -> dict[str, float]:
-    """|ΔV| of the better of the two formulas, by walls, whether or not the formulas are among the rungs."""
+    """|ΔV| of the better of the two formulas, by wall, whether or not the formulas are among the rungs."""
     peaks = {each.wall.name: (each.scene, each.wall.peak) for each in predictions}
     return {
         name: float(min(abs(load / peak - 1) for load in by_hand(scene).values()))
@@ -124,12 +124,12 @@ def _total(kind: str, model: str, own: Sequence[Prediction], to_beat: dict[str, 
 
 
 def _factor(ratios: Sequence[float | None]) -> float | None:
-    """Largest of ratios, or of their inverses."""
+    """Largest of the ratios and of their inverses."""
     return max((max(ratio, 1 / ratio) for ratio in ratios if ratio), default=None)
 
 
 def cheapest(sums: Sequence[Total]) -> str | None:
-    """The rung of dry walls that reaches what is asked for in the least time; None where none does."""
+    """The rung that meets all requirements on dry walls in the least time; None if there is none."""
     reaching = [(each.seconds or 0.0, each.model) for each in sums if each.reaches and each.kind == "dry"]
     return min(reaching)[1] if reaching else None
 
@@ -152,7 +152,7 @@ def as_json(sums: Sequence[Total]) -> dict[str, Any]:
 
 
 def percent(value: float | None, sign: str = "") -> str:
-    """A share in percent; a dash where there is none."""
+    """A share in per cent; a dash if there is none."""
     return "–" if value is None else f"{100 * value:{sign}.1f} %"
 
 
@@ -170,7 +170,7 @@ def summary_sheet(sums: Sequence[Total]) -> Sheet:
 
 
 def verdicts(sums: Sequence[Total]) -> list[str]:
-    """In words: what the best rung reaches, and which have not earned their cost."""
+    """Text: what the best rung achieves, and which rungs are not worth their cost."""
     asked = (
         f"Asked for, on dry walls: median |ΔV| ≤ {MEDIAN:.0%}, none beyond {WORST:.0%}, {MODES:.0%} of the modes, "
         f"stiffness and drift at the loss of a fifth within a factor of {FACTOR:g}."

@@ -1,4 +1,4 @@
-"""A row of a table of tests: its entries as numbers in SI units, refused by file and line where they are none."""
+"""A row of a table of tests: its entries as numbers in SI units; invalid entries are refused by file and line."""
 
 import math
 import re
@@ -11,27 +11,27 @@ from runningbond.scene import SceneError
 LENGTHS, FORCES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"N": 1.0, "kN": 1e3}
 STRESSES, SHARES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}, {"%": 1e-2}
 KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES, SHARES)
-"""Units of each kind, in SI units."""
+"""Units of each kind, and their sizes in SI units."""
 
 USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
 USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
-"""Units of columns that do not say theirs."""
+"""Default units of columns, for heads without a unit."""
 
 NOTHING = ("", "-", "–", "nan", "n/a")
-"""Entries that say nothing, in small letters."""
+"""Entries that count as empty, in lower case."""
 
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)
 
 
 def units_of(column: str) -> dict[str, float]:
-    """Units that a column may have: those of the kind of its usual one, any where it has none."""
+    """Units that a column may have: those of the same kind as its default unit, or any if it has none."""
     usual = USUAL.get(column.casefold())
     return {unit: size for kind in KINDS if usual is None or usual in kind for unit, size in kind.items()}
 
 
 @dataclass(frozen=True)
 class TableRow:
-    """A row of a table: its file and line, and its entries by the heads of their columns, small and without units."""
+    """A row of a table: its file and line, and its entries by column heads in lower case without units."""
 
     path: Path
     line: int
@@ -39,7 +39,7 @@ class TableRow:
 
     @classmethod
     def read(cls, path: Path, line: int, heads: list[str], cells: list[str]) -> "TableRow":
-        """The row of some cells; there may be fewer of them than heads, but not more."""
+        """Make a row from cells; there may be fewer cells than heads, but not more."""
         if any(cell.strip() for cell in cells[len(heads) :]):
             raise SceneError(
                 f"{path.name}, line {line}", f"must have {len(heads)} entries, as its heads; has {len(cells)}"
@@ -59,26 +59,26 @@ class TableRow:
 
     @property
     def place(self) -> str:
-        """What the row is called in a message."""
+        """Name of the row in messages."""
         return f"{self.path.name}, line {self.line}"
 
     def key(self, column: str) -> str:
-        """What an entry is called in a message."""
+        """Name of an entry in messages."""
         return f"{self.place}: {column}"
 
     def text(self, column: str) -> str:
-        """An entry as it is written; empty where there is none."""
+        """An entry as written; empty if there is none."""
         return self.entries.get(column.casefold(), ("", ""))[0]
 
     def number(self, column: str) -> float:
-        """A number above 0, in SI units."""
+        """An entry as a number above 0, in SI units."""
         value = self.optional(column)
         if value is None:
             raise SceneError(self.key(column), "is missing; it must be a number above 0, or a scene NAME.toml be there")
         return value
 
     def optional(self, column: str, *, magnitude: bool = False) -> float | None:
-        """A number above 0, or the `magnitude` of one that may be below, in SI units; None where the entry is empty."""
+        """An entry as a number above 0, or the `magnitude` of a negative one, in SI units; None if it is empty."""
         text, unit = self.entries.get(column.casefold(), ("", ""))
         if text.casefold() in NOTHING:
             return None

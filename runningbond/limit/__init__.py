@@ -1,4 +1,4 @@
-"""Limit analysis of rigid blocks: programs for forces, their dual mechanisms, and what the two prove."""
+"""Limit analysis of rigid blocks: linear programs over joint forces, dual mechanisms, and bounds that both prove."""
 
 from .associated import LimitState, bears_dead_load, is_self_locking, limit, limit_state, proved_bound
 from .elastic import elastic_displacement

@@ -1,8 +1,8 @@
 """Associated limit analysis: the largest load multiplier that admissible joint forces can balance.
 
-Static and kinematic theorems hold for an associated joint (slip opens it by tan φ times the slip), so the
-program's optimum and its dual, the collapse mechanism, bracket one number (Livesley 1978). For true, zero
-dilatancy friction that number is an upper bound.
+The static and kinematic theorems hold for associated joints, which open by tan φ times their slip. The optimum of the
+linear program and its dual, the collapse mechanism, bracket one limit load (Livesley 1978). For true friction, which
+has no dilatancy, it is an upper bound.
 """
 
 import time
@@ -25,32 +25,33 @@ from .repair import ROUNDING
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
-ZERO = 1e-6
-"""Multiplier, in units of the live load, below which a bracket need not be relatively narrow: zero is an answer."""
+ZERO_MULTIPLIER = 1e-6
+"""Multiplier, in `Equilibrium.live_unit`, below which the width of a bracket counts absolutely: λ may well be zero."""
 
-SOUND = 1e-6
-"""Largest relative residual, violation or duality gap with which a program's answer is believed."""
+PROOF_TOLERANCE = 1e-6
+"""Largest relative residual, violation or duality gap at which the solution of a program is accepted."""
 
 WIDTHS = ("gap", "complementarity")
-"""Measures that say how wide the bracket is, not whether it is one."""
+"""Measures that give the width of the bracket; the others decide whether it is a bracket at all."""
 
-GLUED = 1e6
-"""Strength of a joint point, in weights of the heaviest block, above which the program is first tried with this one.
+STRENGTH_CAP = 1e6
+"""Strength of a joint point, in force units (weights of the heaviest block), to which larger ones are first cut.
 
-Forces that such a point never reaches need not be in the program, where the others would be lost beside them.
+Joints rarely reach such strengths, and numbers that large would swamp the other forces of the program.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class LimitState:
-    """The optimum of a scene's limit analysis, with the measures by which it is believed.
+    """The optimum of a scene's limit analysis, with the measures that decide whether it is accepted.
 
     Parameters
     ----------
     system, forces
         The equilibrium equations, and the solution of the linear program.
     rests, self_locking
-        Whether admissible forces balance the dead load, and any multiple of the live load; None if nobody asked.
+        Whether admissible forces balance the dead load, and any multiple of the live load; None if this was not
+        checked.
     """
 
     system: Equilibrium
@@ -65,37 +66,38 @@ class LimitState:
 
     @property
     def kinematic_multiplier(self) -> float:
-        """Multiplier at which the mechanism's loads do the work that its joints dissipate, in scaled units."""
+        """Multiplier at which the power of the loads equals the dissipation in the mechanism, in scaled units."""
         return self.system.kinematic_multiplier(self.forces.motion)
 
     @property
     def sound(self) -> bool:
-        """Whether forces and mechanism prove each other right.
+        """Whether forces and mechanism prove each other optimal.
 
-        What they prove is as wide as the interior point of a large wall, or the facets of joints that crush, leave it.
+        For large walls the bracket may be as wide as `tolerance_of`; with crushing joints, made of facets, any width
+        counts.
         """
-        width = max(SOUND, tolerance_of(self.system)) if self.system.crushing is None else np.inf
+        width = max(PROOF_TOLERANCE, tolerance_of(self.system)) if self.system.crushing is None else np.inf
         return self._within(width)
 
     @property
     def admissible(self) -> bool:
-        """Whether forces and mechanism prove a bracket, however wide."""
+        """Whether forces and mechanism prove a bracket of any width."""
         return self._within(np.inf)
 
     def _within(self, width: float) -> bool:
-        return all(value <= (width if name in WIDTHS else SOUND) for name, value in self.measures.items())
+        return all(value <= (width if name in WIDTHS else PROOF_TOLERANCE) for name, value in self.measures.items())
 
     @property
     def measures(self) -> dict[str, float]:
-        """Everything that is zero for an exact answer.
+        """Error measures, all of them zero for an exact solution.
 
         - ``residual``: largest unbalanced force or moment, relative to the largest force.
         - ``violation``: largest distance of a point's forces from its cone of strength, or of a tie's pull from its
           range, relative to the largest force.
         - ``penetration``: largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion;
-          by its slip where tan φ is above 1, or rounding were as many times as large.
-        - ``gap``: distance between static and kinematic multiplier, relative to the larger of them and 1.
-        - ``complementarity``: power of the forces short of the dissipation, by points and ties, relative.
+          if tan φ exceeds 1, divided by it, as it would amplify rounding errors.
+        - ``gap``: distance between static and kinematic multiplier, relative to the larger of the static one and 1.
+        - ``complementarity``: dissipation minus power of the forces at each point and tie, relative to the live load's.
         """
         system, forces, strength = self.system, self.forces, self.system.strength
         multiplier, tangential, motion = forces.multiplier, forces.tangential, forces.motion
@@ -106,8 +108,8 @@ class LimitState:
         outside = strength.violation(normal, tangential) / np.hypot(1.0, strength.friction)
         beyond = np.maximum(-forces.tie, forces.tie - system.tie_yield)
         parts = (forces.pressure, tangential, forces.tie, system.dead)
-        # Of a wall without weight that bears nothing all forces are rounding.
-        largest = max(ZERO, abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts))
+        # For a weightless wall that carries nothing, all forces are rounding errors.
+        largest = max(ZERO_MULTIPLIER, abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts))
         fastest = np.abs(motion).max(initial=0.0)
         spent = normal * opening + tangential * slip
         longer = system.elongation(motion)
@@ -130,53 +132,53 @@ class LimitState:
 
 
 def limit_state(system: Equilibrium) -> LimitState:
-    """Solve the associated limit analysis of a scene; its status may be other than optimal.
+    """Solve the associated limit analysis of a scene; the status of the solution may differ from ``optimal``.
 
-    The state's system has strengths of at most `GLUED` where they prove the answer: its forces are admissible for
-    stronger joints all the more, and its mechanism does not break them. Where it would, forces are so large that they
-    are measured in that strength.
+    Strengths above `STRENGTH_CAP` are first cut to it. What is admissible for weaker joints is so for stronger ones:
+    the solution holds if its mechanism dissipates nothing at strengths that were cut, and the state then has the cut
+    system. Otherwise forces are so large that the analysis is repeated with a force unit `STRENGTH_CAP` times as large.
     """
     if system.crushing is not None:
         forces, rests = crushed(system, system.crushing)
         return LimitState(system, forces, rests=rests)
-    weaker = _cut(system)
+    weaker = _with_capped_strength(system)
     if weaker is system:
         return _solved(system)
     state = _solved(weaker)
-    if state.forces.status == "budget":  # the mechanism may break what was cut
+    if state.forces.status == "budget":  # the mechanism may dissipate in joints that were cut
         return replace(state, forces=replace(state.forces, motion=np.zeros(0)))
     if (
         state.forces.status == "optimal"
         and state.sound
-        and not spends_cut_strength(system, weaker, state.forces.motion, dilatancy=system.strength.friction)
+        and not uses_cut_strength(system, weaker, state.forces.motion, dilatancy=system.strength.friction)
     ):
         return state
-    return limit_state(system.in_forces_of(GLUED))
+    return limit_state(system.in_forces_of(STRENGTH_CAP))
 
 
-def _cut(system: Equilibrium) -> Equilibrium:
-    """The same equations with strengths of at most `GLUED`."""
+def _with_capped_strength(system: Equilibrium) -> Equilibrium:
+    """Return the same equations with strengths of at most `STRENGTH_CAP`."""
     strength = system.strength
-    if strength.strongest <= GLUED:
+    if strength.strongest <= STRENGTH_CAP:
         return system
-    # The cone is cut off farther down, where it is wider: a point that only slips resists as much as before.
-    tension = strength.tension.clip(max=GLUED)
-    shear = (strength.cohesion - strength.friction * tension).clip(max=GLUED)
+    # The cone is truncated at a lower tension, where it is wider, so the cohesion of a point that only slips is kept.
+    tension = strength.tension.clip(max=STRENGTH_CAP)
+    shear = (strength.cohesion - strength.friction * tension).clip(max=STRENGTH_CAP)
     return replace(system, strength=PointStrength(strength.friction, tension, shear))
 
 
-def spends_cut_strength(system: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
-    """Whether a mechanism ``(nd,)`` dissipates, beyond rounding, strength of which a weaker system has less.
+def uses_cut_strength(system: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
+    """Whether a mechanism ``(nd,)`` dissipates energy, beyond rounding, at strengths that a weaker system has cut.
 
-    A point that opens by `dilatancy` times its slip, as its flow rule says, dissipates cohesion only.
+    A point that opens by exactly `dilatancy` times its slip dissipates cohesion only.
     """
-    unit = weaker.force_unit / system.force_unit * (1 + SOUND)
+    unit = weaker.force_unit / system.force_unit * (1 + PROOF_TOLERANCE)
     opening, slip = system.jumps(motion)
     slip = np.abs(slip)
     jumps = np.array([np.abs(opening - dilatancy * slip), slip])
     pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, system)]
     cut = np.array([unit * less < strength for less, strength in zip(*pairs, strict=True)])
-    return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
+    return float(jumps[cut].max(initial=0.0)) > PROOF_TOLERANCE * float(jumps.max(initial=0.0))
 
 
 def _solved(system: Equilibrium) -> LimitState:
@@ -185,11 +187,11 @@ def _solved(system: Equilibrium) -> LimitState:
         if state is not None:
             return state
     forces = solve_forces(system, coulomb(system.strength))
-    if forces.status in ("infeasible", "numerical"):  # simplex settles what the interior point is unsure of
+    if forces.status in ("infeasible", "numerical"):  # the simplex method decides if the interior point cannot
         forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
     state = LimitState(system, forces)
     if forces.status == "optimal" and state.measures["penetration"] > ROUNDING and not is_large(system):
-        # Simplex takes joints of hardly any friction for frictionless ones, and those may bear any pressure.
+        # The simplex method takes joints of very little friction for frictionless ones, which carry any pressure.
         exact = _proved(system)
         if exact is not None and exact.forces.status == "optimal":
             return exact
@@ -197,15 +199,15 @@ def _solved(system: Equilibrium) -> LimitState:
 
 
 def _proved(system: Equilibrium) -> LimitState | None:
-    """What the interior point's answer for a large wall proves; None if that is not enough."""
+    """Return what the interior point's solution of a large wall proves; None if that is not enough."""
     dead = system.under_dead_load()
     resting, point = resting_forces(dead)
     fall = fall_at_rest(dead, point) if resting is None else None
     if fall is not None:
         return LimitState(system, replace(ForceSolution.none("infeasible"), motion=fall), rests=False)
     state = LimitState(system, proved(system, resting), rests=None if resting is None else True)
-    if _wants_more(state):
-        # A vertex costs hours where the interior point's last iterations cost seconds.
+    if _needs_closer_stop(state):
+        # A vertex costs hours, the interior point's last iterations only seconds.
         state = _narrower(state, replace(state, forces=proved(system, resting, STOP[CLOSE])))
     if state.forces.status == "optimal":
         return state if state.sound else None
@@ -218,15 +220,15 @@ def _proved(system: Equilibrium) -> LimitState | None:
     return None
 
 
-def _wants_more(state: LimitState) -> bool:
-    """Whether a very large wall's interior point stopped before it proved a bracket that is believed."""
+def _needs_closer_stop(state: LimitState) -> bool:
+    """Whether a very large wall's interior point stopped before it proved an acceptable bracket."""
     if tolerance_of(state.system) == CLOSE:
         return False
     return state.forces.status == "numerical" or (state.forces.status == "optimal" and not state.sound)
 
 
 def _narrower(first: LimitState, second: LimitState) -> LimitState:
-    """The second of two answers, the bracket of the first where the second was interrupted before it had one."""
+    """Return the second of two states, or the first's bracket if the second was interrupted before it had one."""
     interrupted = second.forces.status == "budget" and first.forces.status == "optimal"
     if interrupted and first.admissible:
         return replace(first, forces=replace(first.forces, status="budget"))
@@ -234,10 +236,10 @@ def _narrower(first: LimitState, second: LimitState) -> LimitState:
 
 
 def stands_under_dead_load(system: Equilibrium) -> bool | None:
-    """Whether admissible forces balance the dead load alone; None if the solver cannot tell.
+    """Whether admissible forces balance the dead load alone; None if the solver cannot decide.
 
-    Normal forces nearly always suffice and make a much smaller program; the friction cones are tried
-    only where they do not.
+    Normal forces nearly always suffice, and their program is much smaller; the full friction cones are tried only if
+    normal forces do not suffice.
     """
     if not system.dead.any():
         return True
@@ -249,7 +251,7 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
 
 
 def bears_dead_load(scene: Scene) -> bool:
-    """Whether admissible joint forces balance a scene's dead load, and more: those of joints that crush as well."""
+    """Whether admissible joint forces, of crushing joints too, balance a scene's dead load and some live load."""
     outcome = limit(scene)
     if outcome.status == "collapse":
         return scene.settlement is not None or (outcome.upper or 0.0) > 0
@@ -259,7 +261,7 @@ def bears_dead_load(scene: Scene) -> bool:
 def is_self_locking(scene: Scene) -> bool:
     """Whether admissible joint forces balance any multiple of a scene's live load."""
     system = equilibrium(scene).with_crushing().under_live_load()
-    # Of a large wall a bound is proved in seconds, where HiGHS takes minutes to find no such forces.
+    # For a large wall a bound is proved in seconds, while HiGHS takes minutes to find that there are no such forces.
     if system.crushing is None and is_large(system):
         state = _proved(system)
         if state is not None and state.forces.status == "optimal":
@@ -270,7 +272,7 @@ def is_self_locking(scene: Scene) -> bool:
 def _balances_any_multiple(system: Equilibrium) -> bool:
     """Whether forces of dry joints balance the live load alone; they may then be added any number of times.
 
-    Those of ties may not, for they are bounded.
+    Ties are left out, because their forces are bounded.
     """
     dry = system.without_strength(system.live)
     if system.crushing is not None:
@@ -282,10 +284,10 @@ def _balances_any_multiple(system: Equilibrium) -> bool:
 
 
 def judge(state: LimitState) -> tuple[Status, str]:
-    """Status of a limit analysis, and a line that says why.
+    """Status of a limit analysis, and a line that explains it.
 
-    An answer is believed only with its proof: an optimum with matching forces and mechanism, a dead
-    load that no forces balance, or forces that lock.
+    A result is accepted only with its proof: an optimum with matching forces and mechanism, a dead load that no forces
+    balance, or self-locking forces.
     """
     system, program = state.system, state.forces.status
     stands = state.rests
@@ -312,21 +314,22 @@ def judge(state: LimitState) -> tuple[Status, str]:
 
 
 def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
-    """Associated limit analysis of a scene.
+    """Run the associated limit analysis of a scene.
 
     Parameters
     ----------
     scene, tolerance
-        The scene, and the relative width of the bracket asked for; a vertex closes it to about 1e-9,
-        the repaired interior point of a large wall, and facets of joints that crush, to 1e-6, of a very large wall, or
-        a large one whose joints crush, to 1e-4, of a huge wall to 1e-2. What is wider than asked for is ``undecided``.
+        The scene, and the required relative width of the bracket. A vertex closes the bracket to about 1e-9. The
+        repaired interior point of a large wall, and the facets of crushing joints, close it to 1e-6; for a very large
+        wall, or a large one with crushing joints, to 1e-4; for a huge wall to 1e-2. A wider one than required is
+        ``undecided``.
 
     Returns
     -------
     Outcome
-        `lower` from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces. Of a support
-        that moves λ is the least share of the dead load that it can bear, `lower` is from the mechanism and `upper`
-        from the forces; one below zero has to be driven along its motion.
+        `lower` follows from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces. For
+        a moving support λ is the least share of the dead load that it can carry, `lower` follows from the mechanism and
+        `upper` from the forces; with a negative share it has to be driven along its motion.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -342,35 +345,35 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     if status == "collapse":
         outcome = _bracketed(outcome, state, tolerance)
     elif status == "infeasible":
-        outcome = falling(outcome, state)
+        outcome = dead_load_fall(outcome, state)
     else:
         outcome = replace(outcome, status=status, **so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
 def remarks(scene: Scene, message: str) -> str:
-    """A message, and what it is to add of how ties and the beam were taken."""
+    """A message, extended by notes on how ties and the beam were modelled."""
     notes = {
-        "ties count by their yield force alone": len(scene.ties) > 0,
-        "of tie.preload, whose friction may hold the wall at these loads, nothing is known": scene.ties.preload.any(),
-        "the beam is held at its height by whatever vertical force that takes": len(scene.late_pins) > 0,
+        "ties count only by their yield force": len(scene.ties) > 0,
+        "not included: friction due to tie.preload, which may hold the wall at these loads": scene.ties.preload.any(),
+        "the beam is held at its height by whatever vertical force is needed": len(scene.late_pins) > 0,
         "λ is the force on the beam [N]": len(scene.drive_path) > 0,
-        "of the beam's path the first direction counts": len(scene.drive_path) > 1,
+        "only the first direction of the beam's path counts": len(scene.drive_path) > 1,
     }
     return "; ".join([message, *(note for note, applies in notes.items() if applies)])
 
 
 def proved_bound(scene: Scene) -> float | None:
-    """Multiplier above which nothing stands, if `limit` proves one; Ctrl-C, with which `limit` ends, is raised.
+    """Multiplier above which the wall cannot stand, if `limit` proves one; Ctrl-C, at which `limit` returns, is raised.
 
-    It is rounded up, to nine digits: its last ones differ from machine to machine, and loads are tried beside it.
+    It is rounded up to nine digits: its last digits differ from machine to machine, and load steps are placed by it.
     """
     upper = proved_outcome(scene).upper
     return None if upper is None else float(f"{upper + 1e-9 * abs(upper):.9g}")
 
 
 def proved_outcome(scene: Scene) -> Outcome:
-    """Outcome of `limit`; Ctrl-C, with which that ends, is raised."""
+    """Outcome of `limit`; Ctrl-C, at which `limit` returns, is raised."""
     outcome = limit(scene)
     if outcome.message.startswith(INTERRUPTED):
         raise KeyboardInterrupt
@@ -378,7 +381,7 @@ def proved_outcome(scene: Scene) -> Outcome:
 
 
 def so_far(state: LimitState) -> dict[str, Any]:
-    """What an interrupted program has proved: bounds, and forces and mechanism that prove them, or rest alone."""
+    """What an interrupted program has proved: bounds, with their forces and mechanism, or that the wall stands."""
     system, forces = state.system, state.forces
     if forces.status != "budget" or system.has_support:
         return {}
@@ -394,15 +397,15 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
     system, forces = state.system, state.forces
     static, kinematic = system.load(forces.multiplier), system.load(state.kinematic_multiplier)
     lower, upper = min(static, kinematic), max(static, kinematic)
-    if upper - lower > tolerance * max(abs(lower), abs(upper), system.live_unit * ZERO):
+    if upper - lower > tolerance * max(abs(lower), abs(upper), system.live_unit * ZERO_MULTIPLIER):
         return replace(outcome, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
     arrays = arrays_of(system, forces.motion, forces)
     known = collapse_state(system.scene, system.points, arrays["force"], arrays["pull"], static)
     return replace(outcome, status="collapse", multiplier=static, lower=lower, upper=upper, **arrays, **known)
 
 
-def falling(outcome: Outcome, state: LimitState) -> Outcome:
-    """Outcome of a wall that collapses under its dead load: how and, but of a large wall, of how much of it."""
+def dead_load_fall(outcome: Outcome, state: LimitState) -> Outcome:
+    """Outcome of a wall that collapses under its dead load: its mechanism and, unless large, the share it can carry."""
     dead, motion = state.system.under_dead_load(), state.forces.motion
     outcome = replace(outcome, status="infeasible")
     if not is_large(dead):
@@ -410,13 +413,13 @@ def falling(outcome: Outcome, state: LimitState) -> Outcome:
         if judge(growing)[0] != "collapse":
             return outcome
         motion, share = growing.forces.motion, growing.system.load(growing.kinematic_multiplier)
-        if share > ZERO:
+        if share > ZERO_MULTIPLIER:
             outcome = replace(outcome, message=f"{outcome.message}; they balance {two_digits(share)} of it")
     return replace(outcome, motion=dead.motion(motion)) if len(motion) else outcome
 
 
 def arrays_of(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:
-    """A mechanism ``(nd,)`` and forces that drive it, as an outcome has them."""
+    """A mechanism ``(nd,)`` and the forces that drive it, as the arrays of an `Outcome`."""
     normal = system.strength.tension - forces.pressure
     return {
         "motion": system.motion(motion),

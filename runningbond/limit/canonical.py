@@ -1,8 +1,8 @@
-"""Equations in an order and on a side that do not depend on how a wall was drawn.
+"""Equilibrium equations in an order and orientation that do not depend on how a wall was drawn.
 
-A degenerate linear program has many optimal corners, and which one a solver stops at depends on the order of its rows
-and on the last bits of its numbers. A search that starts from such corners gives the same answer for a wall and for
-its mirror image only if both hand it the same numbers.
+A degenerate linear program has many optimal vertices. Which of them a solver returns depends on the order of its rows
+and on the last bits of its numbers. A search that starts from such vertices therefore gives the same result for a wall
+and its mirror image only if both yield the same numbers.
 """
 
 from dataclasses import dataclass, replace
@@ -15,23 +15,23 @@ from runningbond.scene import Array, Indices, Scene
 
 from .equilibrium import Equilibrium
 
-PLACE = 6
-"""Decimals of places and loads, in block sizes and largest loads, by which blocks are told apart."""
+PLACE_DECIMALS = 6
+"""Decimals of positions (in block sizes) and loads (in largest loads) by which blocks are distinguished."""
 
-ENTRY = 10
-"""Decimals of the equations' entries that are kept."""
+ENTRY_DECIMALS = 10
+"""Decimals to which entries of the equations are rounded."""
 
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """A permutation of the equations and unknowns of an `Equilibrium`, seen from one side of the wall or the other.
+    """A permutation of the equations and unknowns of an `Equilibrium`, for the wall or its mirror image.
 
     Parameters
     ----------
     side
         −1 for the wall's mirror image.
     rows, points, ties, reactions : int arrays
-        Which equation, point, tie and reaction stands at each place.
+        Number in the original system of the equation, point, tie and reaction at each place.
     sign : (nd,) float
         Factor of each equation.
     """
@@ -44,7 +44,7 @@ class Order:
     sign: Array
 
     def applied(self, system: Equilibrium) -> Equilibrium:
-        """The same equations in this order, rounded; of its scene only the numbers of things are still of use."""
+        """Return the equations in this order, rounded; of their scene only the numbers of items remain valid."""
         turn = diags_array(self.sign)
 
         def ordered(matrix: csc_array, columns: Indices, sense: float = 1.0) -> csc_array:
@@ -60,40 +60,40 @@ class Order:
             reaction=ordered(system.reaction, self.reactions),
             tie=ordered(system.tie, self.ties),
             tie_yield=_significant(system.tie_yield[self.ties]),
-            dead=np.round(self.sign * system.dead[self.rows], ENTRY),
-            live=np.round(self.sign * system.live[self.rows], ENTRY),
+            dead=np.round(self.sign * system.dead[self.rows], ENTRY_DECIMALS),
+            live=np.round(self.sign * system.live[self.rows], ENTRY_DECIMALS),
             scale=system.scale[self.rows],
         )
 
     def places(self, scene: Scene) -> Array:
-        """Centroids of the movable blocks ``(n, 2)`` [m] in this order, seen from this side."""
+        """Centroids of the movable blocks ``(n, 2)`` [m] in this order, mirrored if the order is."""
         free = np.flatnonzero(~scene.fixed)
         return np.asarray(scene.blocks.centroid[free[self.rows[: 3 * len(free) : 3] // 3]] * (self.side, 1.0))
 
     def restored(self, motion: Array) -> Array:
-        """A motion ``(nd,)`` of the ordered equations as one of those they were made of."""
+        """Convert a motion ``(nd,)`` of the ordered equations to one of the original equations."""
         own = np.empty_like(motion)
         own[self.rows] = self.sign * motion
         return own
 
 
 def rounded(matrix: csc_array) -> csc_array:
-    """A matrix of equations without the last bits of its entries."""
+    """Return a matrix of equations without the last bits of its entries."""
     entries = matrix.copy()
-    entries.data = np.round(entries.data, ENTRY)
+    entries.data = np.round(entries.data, ENTRY_DECIMALS)
     entries.eliminate_zeros()
     entries.sort_indices()
     return entries
 
 
 def _significant(values: Array) -> Array:
-    """Values of any size, rounded to ten digits."""
+    """Values of any magnitude, rounded to ten digits."""
     mantissa, exponent = np.frexp(values)
-    return np.ldexp(np.round(mantissa, ENTRY), exponent)
+    return np.ldexp(np.round(mantissa, ENTRY_DECIMALS), exponent)
 
 
 def canonical_order(system: Equilibrium) -> Order:
-    """Order blocks by where they are and what loads them, from the side that comes first by that."""
+    """Order blocks by position and load, and mirror the wall if its mirror image comes first in that order."""
     scene, points = system.scene, system.points
     free = np.flatnonzero(~scene.fixed)
     unit, n = float(np.sqrt(scene.blocks.area[free].max())), len(free)
@@ -102,10 +102,10 @@ def canonical_order(system: Equilibrium) -> Order:
 
     def places(at: Array, side: float) -> Array:
         corner = (side * spread[:, 0]).min(), spread[:, 1].min()
-        return np.asarray(np.round((at * (side, 1.0) - corner) / unit, PLACE) + 0.0)
+        return np.asarray(np.round((at * (side, 1.0) - corner) / unit, PLACE_DECIMALS) + 0.0)
 
     def table(side: float) -> Array:
-        turned = np.round(loads * np.tile([side, 1.0, side], 2), PLACE) + 0.0
+        turned = np.round(loads * np.tile([side, 1.0, side], 2), PLACE_DECIMALS) + 0.0
         return np.hstack([places(scene.blocks.centroid[free], side), turned])
 
     def in_order(keys: Array) -> Indices:

@@ -1,8 +1,8 @@
 """Certificates of collapse with true Coulomb friction.
 
-For a mechanism, forces under the full Coulomb law that vanish where it opens and are at the limit, against the motion,
-where it slides. The multipliers of such forces are an interval, every point of which is a load at which the wall can
-collapse.
+A mechanism is certified by forces in equilibrium under the full Coulomb law that vanish where the mechanism opens and,
+where it slides, are at the limit and oppose the slip. The multipliers of such forces form an interval; the wall can
+collapse at every load in it.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,19 +19,18 @@ from .interior_point import near
 from .proved import nearly_extreme
 
 NO_JUMP = 1e-7
-"""Jump rate, relative to the mechanism's largest motion, that counts as none."""
+"""Jump rate, relative to the mechanism's largest motion, that counts as zero."""
 
 PENETRATION = 1e-6
-"""Closing rate, relative to the mechanism's largest motion, that rules a mechanism out."""
+"""Closing rate, relative to the mechanism's largest motion, above which a mechanism is rejected."""
 
-MANY = 700
-"""Freedoms from which the loads that drive a mechanism are found by interior point and repair, which HiGHS takes longer
-for."""
+REPAIR_FREEDOMS = 700
+"""Degrees of freedom from which driving loads are found by interior point and repair, faster than by HiGHS."""
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at the least and the most load on it."""
+    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at its smallest and largest load."""
 
     motion: Array
     least: ForceSolution
@@ -44,11 +43,11 @@ def least_multiplier(certificate: Certificate) -> float:
 
 
 def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -> ForceSet | None:
-    """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
+    """Set of forces that obey Coulomb's law on a mechanism ``(nd,)``: zero where it opens, limiting where it slides.
 
-    A tie that lengthens is at yield, and one that shortens is slack. What holds a beam at its height presses it down,
-    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other. Jumps up to
-    `still` times the largest motion count as none.
+    A tie that lengthens is at yield, and one that shortens is slack. The reaction that holds a beam at its height
+    cannot pull it up, because a moving wall does not get lower. None for a mechanism whose blocks interpenetrate. Jumps
+    up to `still` times the largest motion count as zero.
     """
     opening, slip = system.jumps(motion)
     largest = float(np.abs(motion).max(initial=0.0))
@@ -73,14 +72,15 @@ def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -
 def certify(
     system: Equilibrium, motion: Array, extreme: Callable[[ForceSet, Aim], ForceSolution | None] | None = None
 ) -> Certificate | None:
-    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts.
+    """Find the smallest and largest load that drive a mechanism; None if there are none.
 
-    Forces at the ``smallest`` and the ``largest`` load are as exact as what is given to find them; without it proved.
+    If the largest load is unbounded, only the smallest counts. Forces at both loads come from `extreme`, for the aims
+    ``smallest`` and ``largest``, and are as exact as it is; without `extreme` they are proved.
     """
     forces = driving_forces(system, motion)
     if forces is None:
         return None
-    find = partial(_end, system) if extreme is None else extreme
+    find = partial(_extreme_forces, system) if extreme is None else extreme
     least = find(forces, "smallest")
     if least is None or least.status != "optimal":
         return None
@@ -91,7 +91,7 @@ def certify(
 
 
 def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int], None]) -> Certificate | None:
-    """Loads that drive a mechanism, near its ends, by interior points, each of which counts; `certify` proves them."""
+    """Find approximate loads that drive a mechanism, by interior points that `count` adds up; `certify` proves them."""
 
     def extreme(forces: ForceSet, aim: Aim) -> ForceSolution:
         count(1)
@@ -100,12 +100,12 @@ def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int],
     return certify(system, motion, extreme)
 
 
-def _end(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:
-    """Forces at an extreme load: those of large walls are near it, and proved all the same.
+def _extreme_forces(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:
+    """Forces at an extreme load; for large walls they are near the extreme, but still proved.
 
-    The load of these is told to as many digits as their balance has: the last ones differ from machine to machine.
+    That load is rounded to the digits that the balance of forces has; the last ones differ from machine to machine.
     """
-    found = nearly_extreme(system, forces, aim) if system.freedoms >= MANY else None
+    found = nearly_extreme(system, forces, aim) if system.freedoms >= REPAIR_FREEDOMS else None
     if found is None:
         return solve_forces(system, forces, aim)
     return replace(found, multiplier=float(f"{found.multiplier:.12g}"))
@@ -114,9 +114,9 @@ def _end(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:
 def certified_loads(
     certificates: Sequence[Certificate], load: Callable[[float], float], *, falling: bool = False
 ) -> list[tuple[float, float]]:
-    """Loads at which collapse is certified, as intervals that do not touch, in order.
+    """Loads at which collapse is certified, as disjoint intervals in ascending order.
 
-    `load` makes them of multipliers; `falling` if it falls as they grow.
+    `load` converts multipliers to loads; `falling` if the load decreases as the multiplier grows.
     """
     ends = [(load(c.least.multiplier), load(c.most.multiplier)) for c in certificates]
     pairs = sorted((min(pair), max(pair)) if falling else pair for pair in ends)

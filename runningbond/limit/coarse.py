@@ -1,17 +1,17 @@
-"""Certificates of walls of some hundred blocks, looked for in walls of fewer and proved in the wall itself.
+"""Certificates for walls of some hundred blocks, found in walls of fewer macro-blocks and proved in the full wall.
 
-Most mechanisms of little load move a few large parts of a wall. On these parts alone a program takes milliseconds
-where the wall's own takes some tenths of a second, and what moves is a mechanism of the wall all the same (`macro`).
-Where a wall may part is not known before: sequences of programs over the wall, by interior points, whose mechanisms are
-mixes of all that collapse at about that load, move some joints far and others hardly. Blocks that move as one in all
-programs of a sequence are glued, and the glued wall is searched as any other (`search`).
+Most mechanisms of small load move a few large parts of a wall. A program over these parts takes milliseconds instead of
+some tenths of a second, and a mechanism of the parts is also a mechanism of the full wall (`macro`). Where the wall
+separates is not known beforehand. It is estimated by sequences of interior-point programs over the full wall. Their
+mechanisms mix all those that collapse at about the same load, so some joints move far and others barely. Blocks that
+move together in all programs of a sequence are glued, and the glued wall is searched like any other (`search`).
 
-Forces that balance the wall's blocks balance its parts too, so that the loads which drive a mechanism of the glued wall
-there hold all those which do in the wall: glued walls have the smaller ones, and no forces there are none in the wall.
-Their certificates are therefore proved in the wall from the lowest up, until the next cannot be lower than what is
-proved, and as many from the highest down.
+Forces that balance the blocks of the wall also balance its parts. The loads that drive a mechanism of the glued wall
+therefore include all those that drive it in the full wall: the smallest load of the glued wall is the lower one, and if
+the glued wall has no such forces, the full wall has none. Certificates are therefore proved in the full wall from the
+lowest up, until the next one cannot be lower than what is proved, and likewise from the highest down.
 
-What moves in many small parts, as a wall that slides all over does, holds no such mechanism, and is left to `search`.
+A wall that moves in many small parts, e.g. one that slides all over, has no such mechanism, and is left to `search`.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,35 +33,37 @@ from .search import programs_allowed, search
 from .search_log import Observer, SearchLog
 from .sequences import WEIGHTS, averaged
 
-POINTS = 1000
-"""Joint points from which a wall is searched so first; smaller ones are searched themselves as soon."""
+COARSE_POINTS = 1000
+"""Joint points from which a wall is searched in parts first; for smaller walls a direct search is as fast."""
 
-MIXES = 8
-"""Programs of a sequence that shows where a wall may part."""
+SEQUENCE_PROGRAMS = 8
+"""Programs of a sequence that shows where a wall may separate."""
 
-LEVELS = tuple(float(f"{digit}e-{power}") for power in (2, 3, 4, 5) for digit in (5, 2, 1))
-"""Jumps, relative to the largest motion, below which blocks may be glued."""
+GLUE_LEVELS = tuple(float(f"{digit}e-{power}") for power in (2, 3, 4, 5) for digit in (5, 2, 1))
+"""Levels of jumps, relative to the largest motion, below which blocks may be glued."""
 
-FEWEST, FEW, MORE = 45, 150, 300
-"""Most freedoms of a glued wall, three a part: of a program, of a sequence, and of the first two sequences together."""
+PROGRAM_FREEDOMS, SEQUENCE_FREEDOMS, FIRST_FREEDOMS = 45, 150, 300
+"""Largest number of degrees of freedom, three a part, of a wall glued by the jumps of one program, of one sequence, and
+of the first two sequences together."""
 
 FEW_PROGRAMS, PROGRAMS = 60, 400
-"""Programs after which such a wall is searched no further, of one program and of more."""
+"""Programs after which the search of a glued wall ends, for one glued by one program and by several."""
 
-DRY, STARTS = 4, 40
-"""Sequences in a row that bring nothing lower, after which the search ends, and most of all."""
+MAX_DRY_STARTS, MAX_STARTS = 4, 40
+"""Consecutive sequences without a lower load after which the search ends, and largest number of sequences."""
 
-ALLOWED = 4
-"""What a search may cost beside one over the wall itself: it mostly ends long before."""
+COST_FACTOR = 4
+"""Largest cost of a search, relative to one over the full wall; most searches end long before."""
 
-AROUND, SEQUENCES = 350, 8
-"""Most freedoms of a neighbourhood of a certificate, and sequences in it."""
+NEIGHBOURHOOD_FREEDOMS, NEIGHBOURHOOD_SEQUENCES = 350, 8
+"""Largest number of degrees of freedom of a neighbourhood of a certificate, and sequences run in it."""
 
-IN_VAIN = 6
-"""Neighbourhoods of a certificate in a row that hold nothing lower, after which it is left."""
+MAX_FAILURES = 6
+"""Consecutive neighbourhoods without a lower load after which a certificate is left."""
 
-WORTH = 1e-5
-"""Change of the multiplier, relative to itself and 1, that is worth a proof: interior points tell no smaller ones."""
+MIN_CHANGE = 1e-5
+"""Change of the multiplier, relative to the larger of it and 1, worth a proof; interior points resolve no smaller
+ones."""
 
 
 @dataclass(eq=False)
@@ -73,33 +75,33 @@ class CoarseSearch:
     system, place
         Equations of a wall without moving supports, and centroids of its movable blocks ``(n, 2)`` [m].
     observe
-        Is shown what was found after each glued wall.
+        Called with the `SearchLog` after each glued wall.
     workers
-        Of `search`.
+        Parallel workers of `search`.
     starts
-        Most sequences over the wall.
+        Largest number of sequences over the full wall.
     most
-        Cost after which nothing more is begun, in programs of the wall itself; `ALLOWED` times those of `search` where
-        it is not given.
+        Cost, in programs of the full wall, after which no new search begins; by default `COST_FACTOR` times that of
+        `search`.
     """
 
     system: Equilibrium
     place: Array
     observe: Observer
     workers: int = 1
-    starts: int = STARTS
+    starts: int = MAX_STARTS
     most: float | None = None
     found: SearchLog = field(default_factory=SearchLog)
     seen: set[bytes] = field(default_factory=set)
     tried: set[bytes] = field(default_factory=set)
 
     def run(self) -> SearchLog:
-        """Search, and keep what was found at Ctrl-C."""
+        """Run the search; at Ctrl-C return what was found so far."""
         return self._kept(self._run)
 
     def go_on(self) -> SearchLog:
-        """Search the neighbourhoods of what was found otherwise, and keep what was found at Ctrl-C."""
-        return self._kept(self._around)
+        """Search the neighbourhoods of certificates found by other means; at Ctrl-C return what was found so far."""
+        return self._kept(self._search_neighbourhoods)
 
     def _kept(self, search: Callable[[], None]) -> SearchLog:
         try:
@@ -115,51 +117,51 @@ class CoarseSearch:
         parting = self._start(associated.pressure, 1.0, associated)
         if self.starts > 1:
             parting = np.maximum(parting, self._start(associated.pressure, 0.3, None))
-        self._look(finest(self.system, self.place, parting, MORE), PROGRAMS)
+        self._search_glued(finest(self.system, self.place, parting, FIRST_FREEDOMS), PROGRAMS)
         number, left = 0, np.inf
         while (best := self.found.best) is not None and not self._ends():
-            if self.found.dry < DRY and self.found.starts < min(self.starts, STARTS):
+            if self.found.dry < MAX_DRY_STARTS and self.found.starts < min(self.starts, MAX_STARTS):
                 rng = np.random.default_rng([2, number])
                 pressure = (associated if number % 2 == 0 else best.least).pressure
                 pressure = pressure * rng.lognormal(size=len(pressure))
                 self._start(pressure, WEIGHTS[number % len(WEIGHTS)], associated if number % 4 < 2 else None)
                 number += 1
             elif is_worth(left, self.found.lowest):
-                self._around()
+                self._search_neighbourhoods()
                 left = self.found.lowest
             else:
                 return
 
-    def _around(self) -> None:
-        """Search neighbourhoods of the lowest certificate until some in a row have nothing lower.
+    def _search_neighbourhoods(self) -> None:
+        """Search neighbourhoods of the lowest certificate until several in a row have nothing lower.
 
-        The first is of all that moves there, others of one point that does.
+        The first neighbourhood is that of all moving points, the others are each that of a single moving point.
         """
-        rng, in_vain = np.random.default_rng(3), 0
-        while (best := self.found.best) is not None and in_vain < IN_VAIN and not self._ends():
+        rng, failures = np.random.default_rng(3), 0
+        while (best := self.found.best) is not None and failures < MAX_FAILURES and not self._ends():
             before, moving = best.least.multiplier, ~still_points(self.system, best.motion, NO_JUMP)
             one = one_of(moving, rng)
-            glued = neighbourhood(self.system, self.place, moving, one if in_vain else moving, AROUND)
-            self._look_from(best, glued, rng)
-            in_vain += 1
+            glued = neighbourhood(self.system, self.place, moving, one if failures else moving, NEIGHBOURHOOD_FREEDOMS)
+            self._search_from(best, glued, rng)
+            failures += 1
             if is_worth(before, self.found.lowest):
-                self.found.dry = in_vain = 0
+                self.found.dry = failures = 0
 
     def _ends(self) -> bool:
         return self.found.interrupted or self.found.cost >= self._allowed
 
     @property
     def _allowed(self) -> float:
-        return ALLOWED * programs_allowed(self.system) if self.most is None else self.most
+        return COST_FACTOR * programs_allowed(self.system) if self.most is None else self.most
 
     def _start(self, pressure: Array, weight: float | None, associated: ForceSolution | None) -> Array:
-        """Search what is left of gluing all that hardly moves in a sequence of programs from a pressure ``(np,)``.
+        """Glue what barely moves in a sequence of programs from a pressure ``(np,)``, and search what is left.
 
-        In each of its mechanisms by itself, and in all of them and an associated one; it returns their largest jumps
-        ``(np,)``, relative. No weight stands for (k + 1)^(−1/2), as in `search`.
+        The wall is glued by each mechanism alone, and by all of them and an associated one together. Returns the
+        largest relative jumps ``(np,)`` of the sequence. Weight None stands for (k + 1)^(−1/2), as in `sequences`.
         """
         before, parting = self.found.lowest, self._jumps(np.zeros(self.system.freedoms))
-        for k in range(MIXES):
+        for k in range(SEQUENCE_PROGRAMS):
             if self._ends():
                 break
             program = near(self.system, frozen_friction(self.system.strength, pressure))
@@ -167,11 +169,11 @@ class CoarseSearch:
             if program.status != "optimal":
                 break
             jumps = self._jumps(program.motion)
-            self._look(finest(self.system, self.place, jumps, FEWEST), FEW_PROGRAMS)
+            self._search_glued(finest(self.system, self.place, jumps, PROGRAM_FREEDOMS), FEW_PROGRAMS)
             parting = np.maximum(parting, jumps)
             pressure = averaged(pressure, program.pressure, weight or (k + 1.0) ** -0.5)
         also = 0.0 if associated is None else self._jumps(associated.motion)
-        self._look(finest(self.system, self.place, np.maximum(parting, also), FEW), PROGRAMS)
+        self._search_glued(finest(self.system, self.place, np.maximum(parting, also), SEQUENCE_FREEDOMS), PROGRAMS)
         self.found.starts += 1
         self.found.dry = 0 if is_worth(before, self.found.lowest) else self.found.dry + 1
         return parting
@@ -180,9 +182,9 @@ class CoarseSearch:
         jumps = np.abs(self.system.jumps(motion)).max(axis=0)
         return np.asarray(jumps / (np.abs(motion).max(initial=0.0) or 1.0))
 
-    def _look(self, glued: Glued | None, programs: int) -> None:
+    def _search_glued(self, glued: Glued | None, programs: int) -> None:
         """Search a glued wall."""
-        if glued is None or self._knows(glued):
+        if glued is None or self._is_done(glued):
             return
         most = min(float(programs), (self._allowed - self.found.cost) / glued.cost)
         associated = solve_forces(glued.system, coulomb(glued.system.strength))
@@ -191,41 +193,41 @@ class CoarseSearch:
         self.found.interrupted |= parts.interrupted
         self._prove(glued, parts.certificates)
 
-    def _look_from(self, best: Certificate, glued: Glued | None, rng: np.random.Generator) -> None:
-        """Search a glued wall from a certificate that moves nothing glued."""
-        if glued is None or self._knows(glued):
+    def _search_from(self, best: Certificate, glued: Glued | None, rng: np.random.Generator) -> None:
+        """Search a glued wall from a certificate that moves none of the glued joints."""
+        if glued is None or self._is_done(glued):
             return
         programs, certificates = Programs(glued.system, asks_interior_point=False), list[Certificate]()
         try:
-            certificates += certificates_near(glued, best, programs, SEQUENCES, rng)
+            certificates += certificates_near(glued, best, programs, NEIGHBOURHOOD_SEQUENCES, rng)
         except KeyboardInterrupt:
             self.found.interrupted = True
         self.found.add_programs(programs.solved, glued.cost)
         self._prove(glued, certificates)
 
-    def _knows(self, glued: Glued) -> bool:
-        """Whether a glued wall was searched before; it is now."""
+    def _is_done(self, glued: Glued) -> bool:
+        """Whether a glued wall was searched before, or the search has to end; the wall is marked as searched."""
         known = self._ends() or glued.points.tobytes() in self.seen
         self.seen.add(glued.points.tobytes())
         return known
 
     def _prove(self, glued: Glued, certificates: Sequence[Certificate]) -> None:
-        """Prove certificates of the glued wall in the wall, as far as they may be lower or higher than what is.
+        """Prove certificates of the glued wall in the full wall, as long as they may extend the range of loads found.
 
-        After Ctrl-C the lowest alone.
+        After Ctrl-C only lower loads are proved.
         """
         for each in sorted(certificates, key=least_multiplier):
             if not is_worth(self.found.lowest, each.least.multiplier):
                 break
-            self._try(glued.motions @ each.motion)
+            self._prove_motion(glued.motions @ each.motion)
         for each in sorted(certificates, key=lambda each: -each.most.multiplier):
             if self.found.interrupted or not is_worth(each.most.multiplier, self.found.highest):
                 break
-            self._try(glued.motions @ each.motion)
+            self._prove_motion(glued.motions @ each.motion)
         self.observe(self.found)
 
-    def _try(self, motion: Array) -> None:
-        """Prove a mechanism ``(nd,)``, unless it opens and slides as one did that was tried before."""
+    def _prove_motion(self, motion: Array) -> None:
+        """Prove a mechanism ``(nd,)``, unless one that opens and slides at the same points was tried before."""
         jumps = jump_pattern(self.system, motion)
         if jumps in self.tried:
             return
@@ -233,21 +235,21 @@ class CoarseSearch:
         proved = roughly_certified(self.system, motion, self.found.add_programs)
         if proved is not None and self._is_beyond(proved):
             self.found.add_programs(2)
-            proved = certify(self.system, motion)  # what is not quite one would hide those that are
+            proved = certify(self.system, motion)  # an approximate certificate would hide exact ones
         if proved is not None:
             self.found.certificates.append(proved)
 
     def _is_beyond(self, certificate: Certificate) -> bool:
-        """Whether a certificate is the lowest or the highest."""
+        """Whether a certificate is the lowest or the highest so far."""
         lower = certificate.least.multiplier < self.found.lowest
         return lower or certificate.most.multiplier > self.found.highest
 
 
 def is_worth(large: float, small: float) -> bool:
-    """Whether the larger of two multipliers, which may be infinite, is worth a proof."""
-    return large > small and (np.isinf(large - small) or large - small > WORTH * max(1.0, abs(large)))
+    """Whether the difference of two multipliers, which may be infinite, is worth a proof."""
+    return large > small and (np.isinf(large - small) or large - small > MIN_CHANGE * max(1.0, abs(large)))
 
 
 def finest(system: Equilibrium, place: Array, jumps: Array, freedoms: int) -> Glued | None:
-    """The wall glued where points jump least ``(np,)``, as far as leaves so many freedoms; None for none."""
-    return freest(system, place, jumps, LEVELS, freedoms)
+    """Glue the wall where points jump least ``(np,)``, leaving at most so many freedoms; None if none are left."""
+    return freest(system, place, jumps, GLUE_LEVELS, freedoms)

@@ -1,9 +1,9 @@
-"""Limit analysis of joints that crush: points on the boundary of what they carry, more of them where they are needed.
+"""Limit analysis of joints that crush, by column generation over resultants on the boundary of their strength domain.
 
-Forces of a joint are mixes of resultants that it carries, and of none: a polyhedron inside the true set, so that
-multipliers of the program are proved from below. Its mechanism, put into the true set's support function, proves a
-multiplier from above; where that function takes its value is a resultant that the program had not known. It is added,
-and the program solved again, until the two are as close as asked for (Dantzig & Wolfe 1960).
+Forces of a joint are convex combinations of known resultants that it carries. They form a polyhedron inside the true
+domain, so the program's multiplier is a lower bound. Its mechanism, inserted into the support function of the true
+domain, yields an upper bound. The point at which that function takes its value is a new resultant. It is added and the
+program solved again, until the bounds are as close as required (Dantzig & Wolfe 1960).
 """
 
 from contextlib import suppress
@@ -35,59 +35,59 @@ from .proved import CLOSE, ROUGH, WIDE, is_large, loaded
 from .repair import admissible, balanced
 
 ROUNDS = 60
-"""Programs after which a bracket is left as wide as it is."""
+"""Largest number of programs; after them the bracket keeps the width that it has."""
 
-FINER, SMALLEST = 16.0, 0.1
-"""Ratio of the shares of a joint that the first stress blocks take, and force units on the smallest of them."""
+SHARE_RATIO, SMALLEST_FORCE = 16.0, 0.1
+"""Ratio of successive shares of a joint that the first stress blocks occupy, and smallest force, in force units."""
 
-NEW = 1e-10
-"""Power, relative to that of all joints, which a new resultant must have before those known."""
+MIN_POWER_GAIN = 1e-10
+"""Power, relative to that of all joints, by which a new resultant must exceed those known to be added."""
 
-ZERO = 1e-3
-"""Multiplier below which the bracket is no longer narrowed relatively."""
+ZERO_MULTIPLIER = 1e-3
+"""Multiplier below which the width of the bracket is measured absolutely, in multiples of this value."""
 
-SPENT, LISTED = 1e-3, 3
-"""Share of all that joints that crush dissipate, below which a hinge is not counted, and how many a message lists."""
+HINGE_SHARE, LISTED_HINGES = 1e-3, 3
+"""Share of the dissipation of crushing joints from which a hinge counts, and number of hinges that a message lists."""
 
-IDLE = 1e-5
-"""Force of a resultant, relative to the largest, without which balance is first looked for."""
+IDLE_FORCE = 1e-5
+"""Force of a resultant, relative to the largest, below which repair also tries to balance forces without it."""
 
-NOTHING = 1e-9
-"""Force, in force units, that is none."""
+NO_FORCE = 1e-9
+"""Force, in force units, that counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class Resultants:
-    """Forces N₁, N₂ and V ``(3, n)`` on the boundary of what joints ``(n,)`` of a `Crushing` carry."""
+    """Forces N₁, N₂ and V ``(3, n)`` on the boundary of the strength domain of joints ``(n,)`` of a `Crushing`."""
 
     owner: Indices
     forces: Array
 
     @property
     def size(self) -> Array:
-        """Largest force of each, ``(n,)``."""
+        """Largest force of each resultant, ``(n,)``."""
         return np.asarray(np.abs(self.forces).max(axis=0))
 
     def nearer(self, joints: Crushing, jumps: Array) -> "Resultants":
-        """These, and those that dissipate more on jumps ``(3, nc)``."""
+        """Add the resultants that dissipate more than the known ones on jumps ``(3, nc)``."""
         forces = joints.forces(jumps)
         power, best = (forces * jumps).sum(axis=0), np.zeros(len(joints))
         np.maximum.at(best, self.owner, (self.forces * jumps[:, self.owner]).sum(axis=0))
-        new = np.flatnonzero(power - best > NEW * power.sum())
+        new = np.flatnonzero(power - best > MIN_POWER_GAIN * power.sum())
         return Resultants(np.append(self.owner, new), np.hstack([self.forces, forces[:, new]]))
 
 
 def first_resultants(joints: Crushing) -> Resultants:
-    """Stress blocks from either end, with and without shear, down to those of small forces."""
-    levels = int(np.ceil(np.log(max(joints.strength.max() / SMALLEST, 1.0)) / np.log(FINER)))
-    forces = joints.blocks(np.append(FINER ** -np.arange(levels + 1.0), 0.0))
+    """Resultants of stress blocks from either end, with and without shear, down to small forces."""
+    levels = int(np.ceil(np.log(max(joints.strength.max() / SMALLEST_FORCE, 1.0)) / np.log(SHARE_RATIO)))
+    forces = joints.blocks(np.append(SHARE_RATIO ** -np.arange(levels + 1.0), 0.0))
     found = Resultants(np.repeat(np.arange(len(joints)), forces.shape[1] // len(joints)), forces)
-    used = found.size > NOTHING
+    used = found.size > NO_FORCE
     return Resultants(found.owner[used], forces[:, used])
 
 
 def without_crushing(system: Equilibrium, joints: Crushing) -> tuple[Equilibrium, ForceSet]:
-    """A system and its forces while joints that crush carry nothing."""
+    """A system and its set of forces in which crushing joints carry nothing."""
     carries = np.ones(len(system.points))
     carries[joints.ends] = 0.0
     strength = system.strength
@@ -98,9 +98,9 @@ def without_crushing(system: Equilibrium, joints: Crushing) -> tuple[Equilibrium
 
 @dataclass(frozen=True, eq=False)
 class InnerProgram:
-    """A `force_program` whose joints that crush carry mixes of known resultants.
+    """A `force_program` whose crushing joints carry convex combinations of known resultants.
 
-    Its unknowns are the forces of those, what is left of each joint, and the unknowns of the program without them.
+    Its unknowns are their forces, the unused share of each joint, and the unknowns of the program without these joints.
     """
 
     system: Equilibrium
@@ -109,7 +109,7 @@ class InnerProgram:
 
     @cached_property
     def others(self) -> tuple[Equilibrium, ForceSet]:
-        """The system and its forces without the joints that crush."""
+        """The system and its set of forces without the joints that crush."""
         return without_crushing(self.system, self.joints)
 
     def arguments(self, aim: Aim = "largest") -> dict[str, Any]:
@@ -130,7 +130,7 @@ class InnerProgram:
         }
 
     def solution(self, status: ProgramStatus, found: Array, multipliers: Array, iterations: int) -> ForceSolution:
-        """Unknowns and multipliers of rows, by what they are; a joint's shear is where its pressure is."""
+        """Convert unknowns and multipliers of rows; a joint's shear is split as its ends' shear strength is."""
         system, known, ends, n = self.system, self.known, self.joints.ends, len(self.joints)
         rest = found[len(known.owner) + n :]
         solution = solution_of(*self.others, status, rest, multipliers[: system.freedoms], iterations)
@@ -138,18 +138,18 @@ class InnerProgram:
         *normal, shear = (np.bincount(known.owner, part * shares, n) for part in known.forces)
         pressure, tangential = solution.pressure.copy(), solution.tangential.copy()
         pressure[ends] = system.strength.tension[ends] - normal
-        # A joint that nothing presses may be pulled at, by rounding.
+        # A joint without pressure may carry tension of the size of rounding errors.
         most = (system.strength.shear + system.strength.friction * pressure)[ends].clip(min=0.0)
         tangential[ends] = shear * (most / np.maximum(most.sum(axis=0), np.finfo(float).tiny))
         return replace(solution, pressure=pressure, tangential=tangential, motion=self.mechanism(multipliers))
 
     def mechanism(self, multipliers: Array) -> Array:
-        """Motion ``(nd,)`` that multipliers of rows ``(m,)`` are, f_live · q = 1 where the live load does work."""
+        """Motion ``(nd,)`` from multipliers of rows ``(m,)``, scaled to f_live · q = 1 if the live load does work."""
         motion = multipliers[: self.system.freedoms]
         return np.asarray(motion / (float(self.system.live @ motion) or 1.0))
 
     def vertex(self) -> ForceSolution:
-        """What HiGHS finds."""
+        """Solution found by HiGHS."""
         result = solve_program(self.arguments(), "highs-ipm")
         status = STATUS[int(result.status)]
         if result.x is None or status != "optimal":
@@ -157,16 +157,16 @@ class InnerProgram:
         return self.solution(status, np.asarray(result.x), np.asarray(result.eqlin.marginals), int(result.nit))
 
 
-def closest(system: Equilibrium) -> float:
-    """Relative width of the bracket that is aimed at; of a large wall programs take too long for more."""
+def target_width(system: Equilibrium) -> float:
+    """Target for the relative width of the bracket; wider for large walls, whose programs would take too long."""
     return WIDE if is_large(system) else CLOSE
 
 
 def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool | None]:
-    """Forces and mechanism of a system with joints that crush, and whether it rests under its dead load.
+    """Forces and mechanism of a system with crushing joints, and whether it rests under its dead load.
 
-    Their bracket is as wide as `closest` says, or as `ROUNDS` leave it. Ctrl-C leaves that of the last program, if one
-    was solved, and the status is ``budget``.
+    Their bracket is at most `target_width` wide, or as wide as `ROUNDS` leave it. Ctrl-C returns that of the last
+    program, if one was solved, with status ``budget``.
     """
     dead = system.under_dead_load()
     rests, known = _resting(dead, joints)
@@ -179,9 +179,9 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
         forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
     found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
     is_interrupted = point.interrupted or bool(interruptions)
-    if found is None or not (is_interrupted or _width(system, found) <= closest(system)):
+    if found is None or not (is_interrupted or _width(system, found) <= target_width(system)):
         try:
-            found = _beside_vertex(program, forces, motion) or found
+            found = _best_bounds(program, forces, motion) or found
         except KeyboardInterrupt:
             is_interrupted = True
     status: ProgramStatus = "budget" if is_interrupted else "optimal"
@@ -191,13 +191,13 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
 
 
 def _width(system: Equilibrium, found: ForceSolution) -> float:
-    """Relative width of the bracket of forces and a mechanism."""
+    """Relative width of the bracket proved by forces and a mechanism."""
     bounds = found.multiplier, system.kinematic_multiplier(found.motion)
-    return float(abs(bounds[1] - bounds[0]) / max(*np.abs(bounds), ZERO))
+    return float(abs(bounds[1] - bounds[0]) / max(*np.abs(bounds), ZERO_MULTIPLIER))
 
 
-def _beside_vertex(program: InnerProgram, forces: Array | None, motion: Array | None) -> ForceSolution | None:
-    """Forces and mechanism that prove most, of repaired ones, if there are any, and of HiGHS's; None if it fails."""
+def _best_bounds(program: InnerProgram, forces: Array | None, motion: Array | None) -> ForceSolution | None:
+    """Combine the best bounds of repaired forces and mechanism, if there are any, and of HiGHS; None if HiGHS fails."""
     system, found = program.system, program.vertex()
     if found.status != "optimal":
         return None
@@ -208,20 +208,20 @@ def _beside_vertex(program: InnerProgram, forces: Array | None, motion: Array | 
 
 
 def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None) -> tuple[Array | None, Array | None]:
-    """Exact forces ``(n,)`` and an exact mechanism ``(m,)``, the program's unknowns and multipliers; None if not found.
+    """Exact forces ``(n,)`` and mechanism ``(m,)``, unknowns and multipliers of the program; None if not found.
 
-    Resultants of which there is next to nothing are better left alone, if it can be done without them.
+    Forces are balanced with and without resultants of nearly zero force; the larger multiplier counts.
     """
     arguments, n = program.arguments(), len(program.known.owner)
     within = None if resting is None else loaded(program.system, arguments, resting)
     idle = np.arange(len(point.forces)) < n
-    idle &= point.forces < IDLE * point.forces[:n].max()
+    idle &= point.forces < IDLE_FORCE * point.forces[:n].max()
     without = replace(
-        point, forces=np.where(idle, 0.0, point.forces), compliance=np.where(idle, IDLE, 1.0) * point.compliance
+        point, forces=np.where(idle, 0.0, point.forces), compliance=np.where(idle, IDLE_FORCE, 1.0) * point.compliance
     )
     tried: list[Array | None] = []
     motion = None
-    with suppress(RuntimeError):  # so few resultants may be in use that their metric is singular
+    with suppress(RuntimeError):  # the metric is singular if too few resultants are in use
         motion = admissible(arguments, point)
         tried = [balanced(arguments, each, within) for each in (point, without)]
     forces = max((each for each in tried if each is not None), key=lambda each: float(each[-1]), default=None)
@@ -233,11 +233,11 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
 def _narrowed(
     system: Equilibrium, joints: Crushing, known: Resultants
 ) -> tuple[InnerProgram, InteriorPoint | None, int]:
-    """The last of a row of programs that know more and more resultants, its interior point, and all iterations.
+    """Solve programs with more and more resultants; return the last one, its interior point, and all iterations.
 
-    The point of the last one solved is `interrupted` where Ctrl-C ended the next; None where there was none before.
+    If Ctrl-C ended a program, the one before counts and its point is marked `interrupted`; None if there was none.
     """
-    aim, iterations, width = closest(system), 0, 1.0
+    aim, iterations, width = target_width(system), 0, 1.0
     program, point = InnerProgram(system, joints, known), None
     for _ in range(ROUNDS):
         following = InnerProgram(system, joints, known)
@@ -258,16 +258,16 @@ def _narrowed(
 
 
 def _rest(program: InnerProgram) -> Array | None:
-    """Forces that balance the dead load strictly within all bounds, unknowns of the program; None if not found."""
+    """Forces strictly within all bounds that balance the dead load, as unknowns of the program; None if not found."""
     arguments = program.arguments("zero")
     point = interior_point(arguments, ROUGH)
     return balanced(arguments, point, None) if point.status == "optimal" else None
 
 
 def _resting(dead: Equilibrium, joints: Crushing) -> tuple[bool | None, Resultants]:
-    """Whether forces balance the dead load, and resultants that do; None if that cannot be told.
+    """Whether forces balance the dead load, and resultants that do; None if that cannot be decided.
 
-    Where the first resultants do not, it is the largest multiple of the dead load that decides.
+    If the first resultants do not suffice, the largest multiple of the dead load that can be balanced decides.
     """
     known = first_resultants(joints)
     multiple = replace(dead, live=dead.dead, dead=np.zeros_like(dead.dead))
@@ -290,14 +290,14 @@ def _resting(dead: Equilibrium, joints: Crushing) -> tuple[bool | None, Resultan
 
 
 def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
-    """What joints that crush spend in a mechanism, and where those that spend most turn."""
+    """Note on a mechanism's crushing joints, and on the hinges inside joints that dissipate most."""
     joints = system.crushing
     assert joints is not None
     jumps = system.crushed_jumps(forces.motion)
     spent = joints.dissipation(jumps)
     first, second, _ = jumps
-    turns = np.flatnonzero((first * second < 0) & (spent > SPENT * spent.sum()))
-    most = turns[np.argsort(-spent[turns], kind="stable")][:LISTED]
+    turns = np.flatnonzero((first * second < 0) & (spent > HINGE_SHARE * spent.sum()))
+    most = turns[np.argsort(-spent[turns], kind="stable")][:LISTED_HINGES]
     run = np.diff(system.points.position[joints.ends[:, most]], axis=0)[0]
     at = system.points.position[joints.ends[0, most]] + (first[most] / (first - second)[most])[:, None] * run
     places = ", ".join(system.scene.blocks.place(p, 6) for p in at)
@@ -306,7 +306,7 @@ def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
 
 
 def beyond_note(system: Equilibrium) -> str:
-    """What is to be said of joints too strong to be taken as ones that crush."""
+    """Note on joints that are too strong to be modelled as crushing."""
     left_out = len(may_crush(system.scene)) - (0 if system.crushing is None else len(system.crushing))
     limit = f"a compressive strength beyond {STRONGEST:g} times the largest load on a block"
     return f"; {left_out} with {limit} are taken not to crush" if left_out else ""

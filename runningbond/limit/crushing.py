@@ -1,18 +1,19 @@
-"""Resultants of joints of finite compressive strength: the support function of their set, and points on its boundary.
+"""Resultants of joints of finite compressive strength: support function and boundary points of their strength domain.
 
-At each point of such a joint the tractions lie in K: |τ| ≤ c − σ tan φ, σ ≤ f_t and the cap p² + C_ss τ² ≤ f_m² on the
-pressure p = max(0, −σ), an ellipse that goes on straight in tension. A joint carries the resultants of all fields of
-tractions in K along it, a convex set. Where its ends open by α₁ and α₂ and it slips by β, α running linearly between,
-that set's support function is
+At each point of such a joint the tractions lie in a domain K: |τ| ≤ c − σ tan φ, σ ≤ f_t and the cap
+p² + C_ss τ² ≤ f_m² on the pressure p = max(0, −σ), an ellipse that continues straight in tension. The resultants of all
+fields of tractions in K form the convex strength domain of a joint. If its ends open by α₁ and α₂, with α linear in
+between, and it slips by β, the support function of that domain is
 
     H(α₁, α₂, β) = A ∫₀¹ h(α₁ + (α₂ − α₁) ξ, β) dξ,    h(α, β) = max {α σ + β τ : (σ, τ) ∈ K},
 
-the power that the joint dissipates at most; its gradient are the forces N₁ = A ∫ σ (1 − ξ), N₂ = A ∫ σ ξ at the ends
-and V = A ∫ τ of the field that does so. The boundary of K is, for τ ≥ 0 and by the ratio α / β of its normals, falling,
+the largest power that the joint can dissipate. The gradient of H contains the forces N₁ = A ∫ σ (1 − ξ) and
+N₂ = A ∫ σ ξ at the ends and V = A ∫ τ of the tractions that attain it. For τ ≥ 0 the boundary of K consists, by falling
+ratio α / β of its normals, of
 
     T, the corner of the cut-off;  B, where the cone meets the cap, if it does;  the arc.
 
-Corners have constant tractions, and the arc σ = f_m tanh u with sinh u = √C_ss α / β, from where α / β < 0 on.
+Tractions are constant at the corners. On the arc, σ = f_m tanh u with sinh u = √C_ss α / β, from α / β < 0 downwards.
 """
 
 from dataclasses import dataclass
@@ -23,14 +24,14 @@ import numpy as np
 from runningbond.joints import wall_cones
 from runningbond.scene import Array, Indices, Scene
 
-SHORT = 0.1
-"""Length of an arc, relative to α and β on it, below which quadrature is exact to rounding and closed forms are not."""
+SHORT_ARC = 0.1
+"""Length of an arc, relative to α and β, up to which quadrature is exact to rounding and closed forms are not."""
 
 TINY = 1e-14
-"""Differences of α, and slips, relative to the largest jump, that count as none."""
+"""Differences of α, and slips, relative to the largest jump, that count as zero."""
 
 STRONGEST = 1e9
-"""Strength of a joint, in force units, beyond which it never crushes: the others would be lost beside it."""
+"""Strength of a joint, in force units, above which it is taken never to crush: it would swamp the other joints."""
 
 NODES, WEIGHTS = ((part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(8), (1, 0), strict=True))
 
@@ -42,13 +43,13 @@ class Crushing:
     Parameters
     ----------
     joint : (nc,) int
-        Which joints they are; the points of joint j are 2j and 2j + 1.
+        Numbers of the joints; the points of joint j are 2j and 2j + 1.
     strength, cap_shear : (nc,) float
         Largest pressure f_m A, and C_ss.
     ratio : (2, nc) float
-        Ratios α / β at which one piece of the boundary of K gives way to the next, falling.
+        Ratios α / β, in falling order, at which one piece of the boundary of K ends and the next begins.
     sigma, tau : (2, nc) float
-        Corners T and B, times the joint's area.
+        Tractions of the corners T and B, times the joint's area.
     """
 
     joint: Indices
@@ -63,7 +64,7 @@ class Crushing:
 
     @property
     def ends(self) -> Indices:
-        """Points at the first and at the second ends of the joints, ``(2, nc)``."""
+        """Points at the first and second end of each joint, ``(2, nc)``."""
         return np.array([2 * self.joint, 2 * self.joint + 1])
 
     def forces(self, jumps: Array) -> Array:
@@ -83,7 +84,7 @@ class Crushing:
         return np.array([*ends, np.sign(slip) * shear])
 
     def _arc(self, start: Array, width: Array, at: Array, span: Array, beta: Array) -> Array:
-        """∫σ, ∫σ ξ and ∫τ over ξ from `at` on by `width`, where α grows from `start`, on the ellipse, ``(3, nc)``."""
+        """∫σ, ∫σ ξ and ∫τ, ``(3, nc)``, on the elliptic arc, for ξ from `at` over `width`; α grows from `start`."""
         unit = np.sqrt(np.where(self.cap_shear > 0, self.cap_shear, 1.0))
         small, end = beta / unit, start + width * span
         root, root_end = np.hypot(start, small), np.hypot(end, small)
@@ -95,18 +96,18 @@ class Crushing:
         normal = (root_end - root) / span
         second = ((end * root_end - start * root - small**2 * turn) / (2 * span) - start * normal) / span
         closed = np.array([normal, second, small * turn / span])
-        short = width * span <= SHORT * np.maximum(root, root_end)
+        short = width * span <= SHORT_ARC * np.maximum(root, root_end)
         normal, second, shear = self.strength * np.where(short, here, closed)
         return np.where(width > 0, [normal, at * normal + second, shear / unit], 0.0)
 
     def dissipation(self, jumps: Array) -> Array:
-        """Largest power of admissible forces on jumps α₁, α₂ and β ``(3, nc)``: H, ``(nc,)``."""
+        """Largest power H ``(nc,)`` of admissible forces on jumps α₁, α₂ and β ``(3, nc)``."""
         return np.asarray((self.forces(jumps) * jumps).sum(axis=0))
 
     def blocks(self, share: Array) -> Array:
-        """Forces of stress blocks that take shares ``(k,)`` of a joint from either end, ``(3, n)``, joint by joint.
+        """Forces of stress blocks that occupy shares ``(k,)`` of a joint from either end, ``(3, n)``, joint by joint.
 
-        Crushed straight down or at a corner with shear, and at the cut-off elsewhere.
+        A block is under pure pressure or, with shear, at corner B; the rest of the joint is at the tension cut-off.
         """
         end, other = share - share**2 / 2, share**2 / 2
         found = []
@@ -127,7 +128,7 @@ def may_crush(scene: Scene) -> Indices:
 
 
 def crushing(scene: Scene, force_unit: float, strongest: float = STRONGEST) -> Crushing | None:
-    """The joints of a scene that crush, those beyond the strongest left out; None if there are none."""
+    """The crushing joints of a scene, without those stronger than `strongest`; None if there are none."""
     materials, joint = [scene.joint_materials[k] for k in scene.material_of_joint], may_crush(scene)
     strength = np.array([materials[k].compressive_strength for k in joint], dtype=float)
     area = scene.joints.length[joint] * scene.thickness_of_joints[joint] / force_unit
@@ -143,11 +144,11 @@ def crushing(scene: Scene, force_unit: float, strongest: float = STRONGEST) -> C
 def _boundary(slope: Array, tension: Array, held: Array, strength: Array, shear: Array) -> tuple[Array, Array, Array]:
     """Ratios and corners of `Crushing` from tan φ, f_t, τ at f_t, f_m and C_ss, ``(2, n)`` each."""
     cohesion = held + slope * tension
-    most = strength / np.sqrt(np.where(shear > 0, shear, np.nan))  # of the shear
+    most = strength / np.sqrt(np.where(shear > 0, shear, np.nan))  # largest shear of the cap
     most = np.where(shear > 0, most, np.inf)
     stretch, crossing = 1 + shear * slope**2, shear * slope * cohesion
     root = np.sqrt((strength**2 * stretch - shear * cohesion**2).clip(min=0.0))
-    # Where the cone reaches the cap: under pressure, in tension, or nowhere, being beyond it.
+    # The cone meets the cap under pressure, in tension, or nowhere because it lies beyond the cap.
     pressed, pulled = cohesion < most, (cohesion >= most) & (held < most)
     with np.errstate(divide="ignore", invalid="ignore"):
         sigma = np.where(pressed, (crossing - root) / stretch, np.where(pulled, (cohesion - most) / slope, 0.0))

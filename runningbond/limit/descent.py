@@ -1,8 +1,8 @@
-"""From one certificate of collapse to one at a smaller load.
+"""Descent from one certificate of collapse to certificates at smaller loads.
 
-The forces of a certificate drive not one mechanism but a cone of them: all that open only where they vanish and slide
-only where they are at the limit. Of another mechanism of that cone the same forces are a certificate as well, and its
-smallest load is as small or smaller. Mechanisms at the cone's edges move least points, and leave the forces freest.
+The forces of a certificate drive not only its mechanism but a cone of them: all that open only where the forces vanish
+and slide only where they are at the limit. With another mechanism of that cone they are a certificate as well, whose
+smallest load is equal or smaller. Mechanisms at the cone's edges move the fewest points and constrain forces least.
 """
 
 from collections.abc import Iterator
@@ -17,33 +17,33 @@ from .equilibrium import Equilibrium
 from .force_program import ForceSolution
 from .programs import Programs
 
-IN_VAIN = 3
-"""Mechanisms of a certificate that bring nothing lower, after which it is left."""
+MAX_FAILURES = 3
+"""Consecutive mechanisms without a lower load after which the descent from a certificate ends."""
 
-WALK = 12
-"""Steps of a walk that bring nothing lower, after which it ends."""
+MAX_WALK_FAILURES = 12
+"""Consecutive steps without a lower load after which a walk ends."""
 
-PIVOTS = 200
-"""Corners that a step of a walk over forces passes at most."""
+WALK_PIVOTS = 200
+"""Largest number of simplex pivots in one step of a walk over forces."""
 
-LOWER = 1e-7
-"""Multiplier, relative to itself and 1, by which a certificate has to be lower to count as lower."""
+LOWER_TOLERANCE = 1e-7
+"""Difference, relative to the larger of the multiplier and 1, from which a certificate counts as lower."""
 
 
 @dataclass(eq=False)
 class Descent:
-    """Programs over a wall, and the mechanisms that they have been solved for, by their patterns."""
+    """Programs over a wall, and the forces at the smallest load of mechanisms already solved, by jump pattern."""
 
     programs: Programs
     known: dict[bytes, ForceSolution | None] = field(default_factory=dict)
 
     @property
     def system(self) -> Equilibrium:
-        """The wall's equations."""
+        """Equilibrium equations of the wall."""
         return self.programs.system
 
     def least(self, motion: Array) -> ForceSolution | None:
-        """Forces at the least load that drives a mechanism ``(nd,)``; None where there are none."""
+        """Forces at the smallest load that drives a mechanism ``(nd,)``; None if there are none."""
         pattern = jump_pattern(self.system, motion)
         if pattern not in self.known:
             forces = driving_forces(self.system, motion)
@@ -52,16 +52,16 @@ class Descent:
         return self.known[pattern]
 
     def around(self, best: Certificate, rng: np.random.Generator) -> Iterator[Certificate]:
-        """Certificates at ever smaller loads, by a walk over mechanisms that forces on the last one drive."""
-        motion, in_vain = best.motion, 0
-        while in_vain < WALK:
-            in_vain += 1
+        """Certificates at ever smaller loads, by a walk over mechanisms that random forces on the last one drive."""
+        motion, failures = best.motion, 0
+        while failures < MAX_WALK_FAILURES:
+            failures += 1
             stepped, forces = self._stepped(motion, rng)
             found = None if stepped is None else self.least(stepped)
             if forces is None or stepped is None or found is None:
                 motion = best.motion
             elif is_lower(found.multiplier, best.least.multiplier):
-                best, in_vain = Certificate(stepped, found, forces), 0
+                best, failures = Certificate(stepped, found, forces), 0
                 yield best
                 for best in self.below(stepped, found, rng):
                     yield best
@@ -70,11 +70,11 @@ class Descent:
                 motion = stepped
 
     def _stepped(self, motion: Array, rng: np.random.Generator) -> tuple[Array | None, ForceSolution | None]:
-        """A mechanism that random forces on another one ``(nd,)`` drive, and the forces."""
+        """A mechanism driven by random forces that also drive another one ``(nd,)``, and these forces."""
         driving = driving_forces(self.system, motion)
         if driving is None:
             return None, None
-        forces = self.programs.corner(driving, random_weights(len(self.system.points), rng), pivots=PIVOTS)
+        forces = self.programs.corner(driving, random_weights(len(self.system.points), rng), pivots=WALK_PIVOTS)
         if forces.status != "optimal":
             return None, None
         return self.programs.mechanism(forces, self._weights(rng)), forces
@@ -83,31 +83,31 @@ class Descent:
         return random_weights(2 * len(self.system.points), rng)
 
     def below(self, motion: Array, forces: ForceSolution, rng: np.random.Generator) -> Iterator[Certificate]:
-        """Certificates at ever smaller loads, from a mechanism and the forces at its least load."""
-        in_vain = 0
-        while in_vain < IN_VAIN:
+        """Certificates at ever smaller loads, from a mechanism and the forces at its smallest load."""
+        failures = 0
+        while failures < MAX_FAILURES:
             moved = self.programs.mechanism(forces, self._weights(rng))
             found = None if moved is None else self.least(moved)
             if moved is not None and found is not None and is_lower(found.multiplier, forces.multiplier):
-                # The forces drive the new mechanism too: every load in between is certified.
+                # The forces drive the new mechanism too, so every load in between is certified.
                 yield Certificate(moved, found, forces)
-                forces, in_vain = found, 0
+                forces, failures = found, 0
             else:
-                in_vain += 1
+                failures += 1
 
 
 def jump_pattern(system: Equilibrium, motion: Array) -> bytes:
-    """Where a mechanism ``(nd,)`` opens and slides, which is all that its loads depend on."""
+    """Pattern of where a mechanism ``(nd,)`` opens and slides, on which alone its loads depend."""
     least = NO_JUMP * float(np.abs(motion).max(initial=0.0))
     jumps = np.concatenate([*system.jumps(motion), system.elongation(motion)])
     return bytes((np.sign(jumps) * (np.abs(jumps) > least)).astype(np.int8))
 
 
 def is_lower(multiplier: float, than: float) -> bool:
-    """Whether a multiplier is smaller than another, which may be infinite, by more than rounding."""
-    return multiplier < than and (np.isinf(than) or multiplier < than - LOWER * max(1.0, abs(than)))
+    """Whether a multiplier is smaller, by more than rounding, than another one, which may be infinite."""
+    return multiplier < than and (np.isinf(than) or multiplier < than - LOWER_TOLERANCE * max(1.0, abs(than)))
 
 
 def random_weights(n: int, rng: np.random.Generator) -> Array:
-    """Random positive weights ``(n,)`` of very different size."""
+    """Random positive weights ``(n,)`` of very different magnitude."""
     return rng.lognormal(0.0, 2.0, n)

@@ -1,4 +1,4 @@
-"""Elastic motion of rigid blocks whose joints neither open nor slip: how far a wall gives before it begins to fall."""
+"""Elastic displacement of rigid blocks whose joints neither open nor slip: how far a wall moves before it collapses."""
 
 import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, diags_array
@@ -11,18 +11,18 @@ from runningbond.scene import Array, Scene
 from .kinematics import jump_operator, live_load, movable_freedoms, pin_operator
 
 SINGULAR = 1e9
-"""Motion, in those of a single spring as stiff as any joint, at which blocks are loose."""
+"""Motion, relative to that of a single spring of the largest stiffness, above which blocks count as loose."""
 
 
 def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
     """Largest displacement of a block [m] under the live load alone, while joints neither open nor slip.
 
-    A lower bound of that at collapse, soft blocks counted in; None without a stiffness, or on pins that leave such a
-    wall loose.
+    A lower bound of the displacement at collapse, deformable blocks included. None if a joint has no stiffness or the
+    pins leave such a wall loose.
     """
     if any(each.elasticity is None for each in scene.materials_of_joints):
         return None
-    points = joint_points(scene.joints, scene.thickness_of_joints, gauss(2))  # exact for what is linear along a joint
+    points = joint_points(scene.joints, scene.thickness_of_joints, gauss(2))  # exact for jumps linear along a joint
     normal, shear = (k * points.area for k in wall_stiffness(scene, points.joint))
     free = movable_freedoms(scene)
     jump = jump_operator(points, scene.blocks.centroid)
@@ -41,9 +41,9 @@ def held_motion(stiffness: csr_array, pins: csr_array, load: Array, stiffest: fl
     Parameters
     ----------
     stiffness : (nd, nd) sparse
-        Of the springs [N/m].
+        Stiffness matrix of the springs [N/m].
     pins : (n_pins, nd) sparse
-        Displacements that are held.
+        Operator of the displacements that are held.
     load : (nd,) float
         Loads [N, N, N m].
     stiffest
@@ -52,7 +52,7 @@ def held_motion(stiffness: csr_array, pins: csr_array, load: Array, stiffest: fl
     Returns
     -------
     (nd,) float or None
-        None where blocks are loose.
+        None if blocks are loose.
     """
     fixed = csr_array(stiffest * pins)
     loose = csr_array((pins.shape[0], pins.shape[0]))

@@ -1,12 +1,11 @@
-"""Equilibrium of rigid blocks, without dimensions.
+"""Equilibrium equations of rigid blocks in dimensionless form.
 
     B_nᵀ f_n + B_tᵀ f_t + Eᵀ N + Cᵀ r − λ f_live = f_dead
 
-with point forces f (tension positive), pulls 0 ≤ N ≤ yield force of ties and reactions r of pinned points. What a tie
-is preloaded by, and how stiff it is, has no influence on what it can carry. Lengths are measured in block sizes,
-forces in the largest dead load (for a weightless wall, in the strongest joint point), each block's equations in its
-share of the largest block, and the live load in its largest entry, so that a wall of any size, density and unit of
-load gives the same numbers.
+with point forces f (tension positive), pulls 0 ≤ N ≤ yield force of ties and reactions r of pinned points. Preload and
+stiffness of a tie do not influence what it can carry. Lengths are measured in block sizes, forces in the largest dead
+load (for a weightless wall, in the strongest joint point), the live load in its largest entry, and each block's
+equations in its share of the largest block. A wall of any size, density and unit of load thus yields the same numbers.
 """
 
 from dataclasses import dataclass, replace
@@ -31,15 +30,15 @@ class Equilibrium:
     Parameters
     ----------
     scene, points
-        The scene, and its contact points: the ends of every joint, moved in by the scene's inset.
+        The scene, and its contact points: the ends of every joint, moved inwards by the scene's inset.
     strength
-        Strength of those points, in force units.
+        Strength of the contact points, in force units.
     opening, slip : (nd, np) sparse array
         Transposed jump operators of the movable degrees of freedom.
     reaction : (nd, n_pins) sparse array
         Transposed pin operator.
     tie : (nd, nt) sparse array
-        Transposed elongations of ties.
+        Transposed elongation operator of ties.
     tie_yield : (nt,) float
         Yield forces of ties, in force units.
     dead, live : (nd,) float
@@ -47,10 +46,10 @@ class Equilibrium:
     force_unit, live_unit : float
         Force [N] and multiplier λ that count as 1.
     scale : (nd,) float
-        Factor of each equation: blocks count by their own weight, or a small one's balance would be lost in
-        the solver's tolerance beside a large one, and moments by their own size.
+        Factor of each equation, from the block's own weight, and for moments also its size; without it the solver's
+        tolerance would hide the balance of small blocks beside large ones.
     crushing
-        Joints of finite compressive strength, where they are taken into account (`with_crushing`).
+        Joints of finite compressive strength, if they are taken into account (`with_crushing`).
     """
 
     scene: Scene
@@ -80,11 +79,11 @@ class Equilibrium:
 
     @property
     def least(self) -> float:
-        """Least multiplier that counts: a load does not change its sense, but a support may be pulled or pushed."""
+        """Lower bound of the multiplier: zero for loads, which keep their sense; none for supports that move."""
         return -np.inf if self.has_support else 0.0
 
     def load(self, multiplier: float) -> float:
-        """λ of the scene: of a moving support what it bears, of loads what they are, not less than zero."""
+        """λ of the scene from a multiplier: a moving support's share of the dead load, or a load of at least zero."""
         return self.live_unit * (0.0 - multiplier if self.has_support else max(0.0, multiplier))
 
     def motion(self, multipliers: Array) -> Array:
@@ -111,7 +110,7 @@ class Equilibrium:
         return np.asarray(self._rates[2] @ multipliers)
 
     def with_crushing(self) -> "Equilibrium":
-        """The same equations, joints that crush taken as such; without weight, forces are in the strongest of them."""
+        """The same equations with crushing joints; without weight the strongest such joint is the force unit."""
         if self.dead.any():
             return replace(self, crushing=crushing(self.scene, self.force_unit))
         joints = crushing(self.scene, self.force_unit, np.inf)
@@ -121,7 +120,7 @@ class Equilibrium:
         return replace(system, crushing=crushing(self.scene, system.force_unit))
 
     def crushed_jumps(self, motion: Array) -> Array:
-        """Openings of the ends and slips of joints that crush, ``(3, nc)``, from multipliers of equations ``(nd,)``."""
+        """Openings of both ends and slip of crushing joints, ``(3, nc)``, from multipliers of equations ``(nd,)``."""
         if self.crushing is None:
             return np.zeros((3, 0))
         ends = self.crushing.ends
@@ -129,9 +128,9 @@ class Equilibrium:
         return np.array([*opening[ends], slip[ends[0]]])
 
     def dissipation(self, motion: Array) -> Array:
-        """Largest power of admissible forces on a mechanism ``(nd,)``, by points, of joints that crush at the first.
+        """Largest power of admissible forces on a mechanism ``(nd,)``, by points; of crushing joints at their first.
 
-        Other points have to open as their flow rule says.
+        Other points have to obey the flow rule.
         """
         found = self.strength.dissipation(*self.jumps(motion))
         if self.crushing is not None:
@@ -144,18 +143,18 @@ class Equilibrium:
         return float(self.dissipation(motion).sum() + self.tie_yield @ self.elongation(motion).clip(min=0.0))
 
     def kinematic_multiplier(self, motion: Array) -> float:
-        """Multiplier at which a mechanism's loads do the work that its joints and ties dissipate, in scaled units."""
+        """Multiplier at which the loads' power equals the dissipation of a mechanism's joints and ties; scaled."""
         return float((self.dissipated(motion) - self.dead @ motion) / (self.live @ motion))
 
     def in_forces_of(self, unit: float) -> "Equilibrium":
-        """The same equations, forces measured in so many of what counts as 1 here."""
+        """The same equations with a force unit that is `unit` times as large."""
         strength = PointStrength(self.strength.friction, self.strength.tension / unit, self.strength.shear / unit)
         dead, force_unit, live_unit = self.dead / unit, self.force_unit * unit, self.live_unit * unit
         pull = self.tie_yield / unit
         return replace(self, strength=strength, tie_yield=pull, dead=dead, force_unit=force_unit, live_unit=live_unit)
 
     def without_strength(self, load: Array) -> "Equilibrium":
-        """The same blocks under another dead load, their joints dry and without ties."""
+        """The same blocks under another dead load, with dry joints and without ties."""
         nothing = np.zeros(len(self.points))
         strength = PointStrength(self.strength.friction, nothing, nothing)
         return replace(self, dead=load, strength=strength, tie_yield=np.zeros_like(self.tie_yield))
@@ -167,11 +166,11 @@ class Equilibrium:
         return replace(self, reaction=self.reaction[:n, : len(self.scene.pins)], **parts)
 
     def under_live_load(self) -> "Equilibrium":
-        """The equations while λ grows: with the motions that are held then only, and with a support that moves.
+        """The equations while λ grows: with motions held under the live load only, and with a moving support.
 
-        That support has one equation more, the virtual work of the forces on it per unit displacement: its live load is
-        the dead load's resultant, and λ the share of it that drives the support along its motion. What the support
-        bears of the wall is −λ.
+        A moving support adds an equation, the virtual work of the forces on it per unit displacement. Its live load is
+        the resultant of the dead load, and λ the share of it that drives the support along its motion. The support
+        carries −λ.
         """
         scene, late = self.scene, self.scene.late_pins
         system = self
@@ -199,7 +198,7 @@ class Equilibrium:
 
 
 def unit_support_motion(scene: Scene) -> Array:
-    """Motion of moving supports, ``(3 nb,)``, that displaces the end of a joint on them by 1 m and none by more."""
+    """Motion of moving supports, ``(3 nb,)``, scaled to a largest displacement of 1 m at the ends of joints on them."""
     return np.asarray(scene.support_motion.ravel() / largest_displacement(scene))
 
 

@@ -1,8 +1,8 @@
 """Linear programs over the forces at joint points: the load multiplier that admissible forces can balance.
 
-The friction cone is written with its rays, f_n = f_t0 − Σ p_k and f_t = s + Σ m_k p_k with p_k ≥ 0, where the
-slopes m_k are ± tan φ for an associated joint. That leaves nothing but the equilibrium equations as rows,
-which HiGHS's interior point solves several times faster than rows of friction inequalities.
+The friction cone is written with its rays, f_n = f_t0 − Σ p_k and f_t = s + Σ m_k p_k with p_k ≥ 0, where the slopes
+m_k are ± tan φ for an associated joint. The equilibrium equations are then the only rows. HiGHS's interior point solves
+such programs several times faster than programs with friction inequalities as rows.
 """
 
 from collections.abc import Sequence
@@ -21,16 +21,16 @@ from runningbond.scene import Array
 from .equilibrium import Equilibrium
 
 Aim: TypeAlias = Literal["largest", "smallest", "zero"]
-"""Which multiplier a program looks for: an extreme one, or whether zero can be balanced."""
+"""Objective of a program: the largest or smallest multiplier, or whether forces balance at the multiplier zero."""
 
 ProgramStatus: TypeAlias = Literal["optimal", "budget", "infeasible", "unbounded", "numerical"]
 STATUS: dict[int, ProgramStatus] = {0: "optimal", 1: "budget", 2: "infeasible", 3: "unbounded", 4: "numerical"}
 
-BALANCED = 1e-6
-"""Sum of unbalanced forces, in largest ones of a load, below which it is held to be balanced."""
+BALANCE_TOLERANCE = 1e-6
+"""Sum of unbalanced forces, relative to the largest entry of the load, up to which the load counts as balanced."""
 
-LOOK = 0.5
-"""Seconds after which one who waits for a program looks up."""
+WAKE_INTERVAL = 0.5
+"""Interval [s] at which a thread that waits for a program wakes up to receive Ctrl-C."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +42,13 @@ class ForceSet:
     slopes : sequence of (np,) float
         Slopes f_t / p of each ray at each point.
     most : sequence of (np,) float
-        Largest p on each ray at each point; inf where the ray is free, 0 where it is shut.
+        Largest p on each ray at each point; inf if the ray is unbounded, 0 if it is not available.
     shear_low, shear_high : (np,) float
         Bounds of s.
     tie_low, tie_high : (nt,) float or None
-        Bounds of the ties' pulls; None is all from nothing to their yield force.
+        Bounds of the ties' pulls; None for zero and the yield force.
     late_least : float
-        Least reaction of motions that are held once the dead load is on; 0 is one that only adds to the dead load.
+        Lower bound of reactions of motions held once the dead load is on; 0 if they may only add to the dead load.
     """
 
     slopes: Sequence[Array]
@@ -66,13 +66,13 @@ class ForceSet:
 
 
 def coulomb(strength: PointStrength) -> ForceSet:
-    """The whole truncated Coulomb cone at every point."""
+    """The full truncated Coulomb cone at every point."""
     free = np.full(len(strength.tension), np.inf)
     return ForceSet((strength.friction, -strength.friction), (free, free), -strength.shear, strength.shear)
 
 
 def frozen_friction(strength: PointStrength, pressure: Array) -> ForceSet:
-    """Shear resistances frozen at those of a given pressure ``(np,)``, so that slip opens nothing."""
+    """Set with shear resistances frozen at those of a given pressure ``(np,)``, so that slip causes no opening."""
     resistance = strength.shear + strength.friction * pressure
     nothing = np.zeros(len(pressure))
     return ForceSet((nothing,), (np.full(len(pressure), np.inf),), -resistance, resistance)
@@ -85,7 +85,7 @@ class ForceSolution:
     Parameters
     ----------
     status, multiplier
-        Whether there is an optimum, and why not; λ at the optimum.
+        Whether there is an optimum, or else why not; λ at the optimum.
     pressure, tangential : (np,) float
         f_t0 − f_n, not negative, and f_t at each point.
     reaction : (n_pins,) float
@@ -93,7 +93,7 @@ class ForceSolution:
     motion : (nd,) float
         Multipliers of the equilibrium equations: the collapse mechanism, f_live · q = 1.
     iterations
-        Of the solver.
+        Number of iterations of the solver.
     tie : (nt,) float
         Pulls of ties.
     """
@@ -109,13 +109,13 @@ class ForceSolution:
 
     @classmethod
     def none(cls, status: ProgramStatus, iterations: int = 0) -> "ForceSolution":
-        """What a program without an optimum gives."""
+        """Return the solution of a program without an optimum."""
         empty = np.zeros(0)
         return cls(status, np.nan, empty, empty, empty, empty, iterations)
 
 
 def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> dict[str, Any]:
-    """Arguments of `scipy.optimize.linprog` that look for a multiplier which forces of a set can balance."""
+    """Arguments of `scipy.optimize.linprog` for the multiplier that forces of a set can balance."""
     rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in forces.slopes]
     shear = [system.slip] if forces.has_shear else []
     others = [*shear, system.tie, system.reaction, csc_array(-system.live[:, None])]
@@ -144,29 +144,29 @@ def bounds_of(system: Equilibrium, forces: ForceSet, *, has_shear: bool) -> Arra
 
 
 def solve_program(program: dict[str, Any], method: str) -> OptimizeResult:
-    """What `scipy.optimize.linprog` finds, which would not look up for Ctrl-C, in a thread that is left alone then."""
+    """Run `scipy.optimize.linprog`, which ignores Ctrl-C, in a thread that is abandoned at Ctrl-C."""
     result: Future[OptimizeResult] = Future()
 
     def solve() -> None:
         try:
             result.set_result(linprog(**program, method=method))  # type: ignore[call-overload]
-        except BaseException as error:  # whoever waits is to see it
+        except BaseException as error:  # passed on to the waiting thread
             result.set_exception(error)
 
     Thread(target=solve, daemon=True).start()
-    while not wait([result], LOOK).done:  # who waits for ever hears nothing on Windows
+    while not wait([result], WAKE_INTERVAL).done:  # without a timeout, Windows delivers no Ctrl-C
         pass
     return result.result()
 
 
 def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
-    """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
+    """Solve `force_program` by interior point and crossover, or by simplex if only feasibility is checked."""
     method = method or ("highs-ds" if aim == "zero" else "highs-ipm")
     program = force_program(system, forces, aim)
     units = [np.ones(len(program["c"]))]
     if (rays := _ray_units(forces, len(units[0]))).min() < 1:
         units.append(rays)
-    # Beside cohesion a small multiplier would be lost in units of the rays.
+    # With cohesion, a small multiplier would be lost in units of the rays.
     attempts = [(unit, _solved) for unit in (units if aim == "zero" or not forces.has_shear else units[:1])]
     if aim == "zero":
         attempts += [(unit, _least_unbalanced) for unit in reversed(units)]
@@ -181,16 +181,16 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
 
 
 def _ray_units(forces: ForceSet, n: int) -> Array:
-    """Units ``(n,)`` of a program's unknowns in which no ray bears more shear than it is.
+    """Units ``(n,)`` of a program's unknowns in which no ray carries more shear than its own value.
 
-    HiGHS forgives pressures of -1e-7, of which a tan φ of 1e6 makes a tenth of a block's weight.
+    HiGHS tolerates pressures of -1e-7, from which a tan φ of 1e6 makes shear of a tenth of a block's weight.
     """
     slopes = np.abs(np.concatenate(forces.slopes))
     return np.append(1 / slopes.clip(min=1.0), np.ones(n - len(slopes)))
 
 
 def _in_units(program: dict[str, Any], unit: Array) -> dict[str, Any]:
-    """A program whose unknowns are measured in units ``(n,)``."""
+    """The same program with unknowns measured in units ``(n,)``."""
     bounds = program["bounds"] / unit[:, None]
     return {**program, "c": program["c"] * unit, "A_eq": program["A_eq"] * unit, "bounds": bounds}
 
@@ -201,10 +201,10 @@ def _solved(program: dict[str, Any], method: str) -> tuple[ProgramStatus, Optimi
 
 
 def _least_unbalanced(program: dict[str, Any], method: str) -> tuple[ProgramStatus, OptimizeResult]:
-    """Whether forces balance the load, from those that leave the least of it unbalanced.
+    """Whether forces balance the load, decided by the forces that leave the smallest part of it unbalanced.
 
-    Such forces there always are, and a mechanism beside them, where HiGHS loses a program without any: it cannot tell
-    with a tan φ of 1e6 whether a wall rests on its corners, and leaves whole weights unbalanced here.
+    This program always has forces and a mechanism; HiGHS fails on programs without any. With a tan φ of 1e6 it cannot
+    decide whether a wall rests on its corners; here whole weights remain unbalanced if it does not.
     """
     n_equations, n = program["A_eq"].shape
     unbalanced = identity(n_equations, format="csc")
@@ -217,7 +217,7 @@ def _least_unbalanced(program: dict[str, Any], method: str) -> tuple[ProgramStat
     status, result = _solved(elastic, method)
     if result.x is None or status != "optimal":
         return status, result
-    balanced = result.x[n:].sum() <= BALANCED * np.abs(program["b_eq"]).max(initial=0.0)
+    balanced = result.x[n:].sum() <= BALANCE_TOLERANCE * np.abs(program["b_eq"]).max(initial=0.0)
     result["x"] = result.x[:n]
     return "optimal" if balanced else "infeasible", result
 
@@ -225,7 +225,7 @@ def _least_unbalanced(program: dict[str, Any], method: str) -> tuple[ProgramStat
 def solution_of(
     system: Equilibrium, forces: ForceSet, status: ProgramStatus, found: Array, marginals: Array, iterations: int
 ) -> ForceSolution:
-    """Unknowns ``(n,)``, as of `bounds_of`, and multipliers of equations ``(nd,)``, by what they are."""
+    """Convert unknowns ``(n,)``, ordered as in `bounds_of`, and multipliers of equations ``(nd,)`` to a solution."""
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
     ties = slice(len(found) - 1 - n_pins - len(system.tie_yield), len(found) - 1 - n_pins)
     rays = found[: n_rays * n].reshape(n_rays, n)
@@ -245,9 +245,9 @@ def solution_of(
 
 
 def mechanism_scale(system: Equilibrium) -> float:
-    """Power unit that brings a mechanism's motions to order one, far above the solver's dual tolerance.
+    """Power unit that scales a mechanism's motions to order one, far above the solver's dual tolerance.
 
-    With unit power the motions of a wall of a thousand blocks are a thousandth each, and its smallest
-    jumps are lost in HiGHS's 1e-7.
+    With unit power the motions of a wall of a thousand blocks would be about 1e-3, and its smallest jumps below HiGHS's
+    tolerance of 1e-7.
     """
     return float(np.abs(system.live).sum()) or 1.0

@@ -1,8 +1,8 @@
-"""What a wall gives before it falls: on the springs of its joints, and as it hangs on its ties.
+"""Displacement of a wall before it collapses: on the springs of its joints, and while it hangs on its ties.
 
-Joints of a wall that is tied open long before its ties yield. Each load that is added then moves it as far as the ties
-stretch, at the end of the levers of its mechanism: a soft bar lets a slender wall sway by many times what is a fall of
-one that nothing holds.
+Joints of a tied wall open long before the ties yield. Each load increment then moves the wall by the stretch of the
+ties, magnified by the lever arms of its mechanism: with a flexible bar a slender wall may sway by many times the
+displacement at which a wall without ties falls.
 """
 
 from dataclasses import replace
@@ -15,19 +15,19 @@ from .elastic import elastic_displacement
 from .kinematics import tie_operator
 
 UNSTRETCHED = 1e-9
-"""Elongation of a tie, beside the motion of the fastest corner, that counts as none."""
+"""Elongation of a tie, relative to the motion of the fastest corner, that counts as zero."""
 
 
 def given_displacement(scene: Scene, multiplier: float) -> float:
-    """Largest displacement of a block [m] under a multiple of the live load before it falls, as far as it is known."""
+    """Largest displacement of a block [m] under a multiple of the live load before collapse, as far as it is known."""
     return (elastic_displacement(scene, multiplier) or 0.0) + hanging_displacement(scene)
 
 
 def hanging_displacement(scene: Scene) -> float:
     """Displacement of the fastest corner [m] in the associated mechanism until its ties yield; 0 without such ties.
 
-    Or in that of the wall without ties, if that is more: they may hold it until the wall gives way elsewhere. Ties that
-    yield one after the other count by the work they take. Ctrl-C is raised.
+    The mechanism of the wall without ties counts instead if its displacement is larger, because ties may hold the wall
+    until it fails elsewhere. Ties that yield one after another are weighted by the work they absorb. Ctrl-C is raised.
     """
     if not len(scene.ties):
         return 0.0

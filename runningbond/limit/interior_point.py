@@ -1,12 +1,12 @@
-"""Linear programs of forces by Clarabel's interior point, stated over mechanisms (Goulart & Chen 2024).
+"""Linear programs over forces by Clarabel's interior point, in their dual form over mechanisms (Goulart & Chen 2024).
 
-The dual of `force_program` has three unknowns a block in place of some twelve; its conic multipliers are the forces:
+The dual of `force_program` has three unknowns per block instead of about twelve; its conic multipliers are the forces:
 
     min −b·y + (u − l)·w,   a_j·y ≤ c_j,   a_j·y − w_j ≤ c_j with w ≥ 0 for forces bounded on both sides.
 
-What comes back is near an optimum and inside all bounds, but balances and obeys nothing exactly; `repair` makes a proof
-of it. No vertex is looked for: of several mechanisms that collapse at the same load, and of several states of force,
-it leaves a mix of all.
+The result is near an optimum and inside all bounds, but it satisfies equilibrium and flow rule only approximately;
+`repair` turns it into a proof. It is no vertex: if several mechanisms collapse at the same load, or several states of
+force exist, the result is a mix of them.
 """
 
 import signal
@@ -26,32 +26,33 @@ from runningbond.scene import Array
 from .equilibrium import Equilibrium
 from .force_program import Aim, ForceSet, ForceSolution, ProgramStatus, force_program, solution_of
 
-FARTHEST = 1e4
-"""Largest and smallest stiffness of a force in `InteriorPoint.compliance`, relative; farther apart rounding wins."""
+COMPLIANCE_BOUND = 1e4
+"""Bound of `InteriorPoint.compliance` and of its inverse; beyond it rounding errors dominate."""
 
-ROUGH = 1e-6
-"""Relative tolerance of programs that only bring pressures up to date, and of whether there are forces."""
+ROUGH_TOLERANCE = 1e-6
+"""Relative tolerance of programs that only update pressures, and of those that check whether forces exist."""
 
-SUPERNODAL = 20_000
-"""Equations above which dense blocks of the factors pay (faer): a third of the time of a simple one on 60 000."""
+FAER_EQUATIONS = 20_000
+"""Equations above which supernodal factorisation (faer) pays; for 60 000 it takes a third of the time of a simple
+one."""
 
 
 @dataclass(frozen=True, eq=False)
 class InteriorPoint:
-    """Where the interior point came to rest, in the unknowns of a `force_program` with n forces and m equations.
+    """Final iterate of the interior point, in the unknowns of a `force_program` with n forces and m equations.
 
     Parameters
     ----------
     status, iterations
-        What Clarabel thinks of it.
+        Status reported by Clarabel, and number of iterations.
     forces, motion : (n,) float, (m,) float
         Approximate optimum, and its multipliers of equations.
     slack : (n,) float
-        Reduced costs c − Aᵀ y that the solver means to have; of forces within bounds they are not negative.
+        Reduced costs c − Aᵀ y according to the solver; not negative for forces within bounds.
     compliance : (n,) float
-        How far each force is from its bounds beside how far its point is from closing, relative: 1 in the middle.
+        Distance of each force from its bounds over that of its point from closing, normalised: 1 in the middle.
     interrupted
-        Whether Ctrl-C ended it on the way.
+        Whether Ctrl-C ended the iteration.
     """
 
     status: ProgramStatus
@@ -64,11 +65,11 @@ class InteriorPoint:
 
 
 def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: bool = False) -> InteriorPoint:
-    """Solve a `force_program` to a relative tolerance; Ctrl-C raises, or leaves what is `unfinished`."""
+    """Solve a `force_program` to a relative tolerance; Ctrl-C raises, or returns the last iterate if `unfinished`."""
     matrix, (low, high) = program["A_eq"], program["bounds"].T
     m, free, boxed = matrix.shape[0], np.isinf(low), np.isfinite(high) & (low < high)
     half = ~free & np.isinf(high)
-    # Free ones first, for their rows are equations; what is boxed last. What is fixed is no unknown.
+    # Free unknowns come first, because their rows are equations; those with two bounds last. Fixed ones are left out.
     order = np.concatenate([np.flatnonzero(kind) for kind in (free, half, boxed)])
     n, n_boxed, n_free = len(order), int(boxed.sum()), int(free.sum())
     least = np.where(free, 0.0, low)
@@ -95,9 +96,9 @@ def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: boo
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         stiffness = slacks[:n] / dual[:n]
         stiffness[n - n_boxed :] += slacks[n:] / dual[n:]
-        stiffness[np.isnan(stiffness)] = unit  # 0 / 0: neither bears anything nor moves
-        compliance[order] = (unit / stiffness).clip(1 / FARTHEST, FARTHEST)
-    compliance[free] = FARTHEST
+        stiffness[np.isnan(stiffness)] = unit  # 0 / 0: neither force nor motion
+        compliance[order] = (unit / stiffness).clip(1 / COMPLIANCE_BOUND, COMPLIANCE_BOUND)
+    compliance[free] = COMPLIANCE_BOUND
     return InteriorPoint(
         _status(str(solution.status)), solution.iterations, forces, motion, slack, compliance, bool(interruptions)
     )
@@ -105,12 +106,12 @@ def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: boo
 
 def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSolution:
     """Forces of a set near those at the largest or smallest load, and near balance."""
-    point = interior_point(force_program(system, forces, aim), ROUGH)
+    point = interior_point(force_program(system, forces, aim), ROUGH_TOLERANCE)
     return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
 
 
 def _listeners() -> dict[int, Callable[[int, FrameType | None], Any]]:
-    """Who listens for Ctrl-C and SIGTERM; nobody in a thread, where no other may be put in their place."""
+    """Handlers of Ctrl-C and SIGTERM; none outside the main thread, where handlers cannot be replaced."""
     if threading.current_thread() is not threading.main_thread():
         return {}
     found = {int(number): signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -119,9 +120,9 @@ def _listeners() -> dict[int, Callable[[int, FrameType | None], Any]]:
 
 @contextmanager
 def _ended_by_signals(solver: Any) -> Iterator[list[int]]:
-    """Let Ctrl-C and SIGTERM, from which it would not look up, end a solver after its iteration.
+    """Let Ctrl-C and SIGTERM, which the solver would ignore, end it after its current iteration.
 
-    Who listens for them hears of it.
+    The handler of the first of them is called afterwards.
     """
     received, listeners = list[int](), _listeners()
     if not listeners:
@@ -142,13 +143,13 @@ def _ended_by_signals(solver: Any) -> Iterator[list[int]]:
 
 @contextmanager
 def finishing() -> Iterator[list[int]]:
-    """Finish what takes seconds and makes a proof of hours although Ctrl-C or SIGTERM comes, once.
+    """Finish a proof, which takes seconds after hours of solving, although Ctrl-C or SIGTERM comes once.
 
-    Who listens for them hears of it at once, without an end to this; a second one ends it.
+    The replaced handlers are called at once, but their KeyboardInterrupt is suppressed; a second signal raises it.
     """
     received, listeners = list[int](), _listeners()
 
-    def hear(number: int, frame: FrameType | None) -> None:
+    def handle(number: int, frame: FrameType | None) -> None:
         received.append(number)
         try:
             listeners[number](number, frame)
@@ -157,12 +158,12 @@ def finishing() -> Iterator[list[int]]:
                 raise
 
     for number in listeners:
-        signal.signal(number, hear)
+        signal.signal(number, handle)
     try:
         yield received
     finally:
         for number, listener in listeners.items():
-            if signal.getsignal(number) is hear:  # who has heard may have let go of it
+            if signal.getsignal(number) is handle:  # the replaced handler may have installed another one
                 signal.signal(number, listener)
 
 
@@ -170,15 +171,15 @@ def _settings(tolerance: float, equations: int) -> Any:
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
-    settings.equilibrate_enable = False  # `Equilibrium` has scaled the equations, and more takes more iterations
-    settings.direct_solve_method = "faer" if equations > SUPERNODAL else "qdldl"
-    settings.iterative_refinement_enable = False  # a quarter of the time, for what is repaired afterwards
+    settings.equilibrate_enable = False  # `Equilibrium` has scaled the equations; more scaling costs iterations
+    settings.direct_solve_method = "faer" if equations > FAER_EQUATIONS else "qdldl"
+    settings.iterative_refinement_enable = False  # saves a quarter of the time, and the result is repaired anyway
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
     return settings
 
 
 def _status(status: str) -> ProgramStatus:
-    """Status of the program of forces; that of mechanisms is its dual."""
+    """Status of the program of forces, whose dual is the program of mechanisms that Clarabel solves."""
     if "PrimalInfeasible" in status:
         return "unbounded"
     if "DualInfeasible" in status:

@@ -16,9 +16,9 @@ NO_SLIP = 1e-6  # slip [m] that counts as none in a mechanism whose fastest corn
 
 
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
-    """Displacements of points ``(n, 2)`` [m] of blocks ``(n,)`` along directions ``(n, 2)``, ``(n, 3 nb)``.
+    """Operator ``(n, 3 nb)`` of displacements of points ``(n, 2)`` [m] of blocks ``(n,)`` along directions ``(n, 2)``.
 
-    All blocks' centroids are ``(nb, 2)`` [m].
+    `centroid` are the centroids of all blocks, ``(nb, 2)`` [m].
     """
     arm = point - centroid[block]
     values = np.column_stack([direction, direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]])
@@ -29,14 +29,14 @@ def point_operator(block: Indices, point: Array, direction: Array, centroid: Arr
 
 @dataclass(frozen=True, eq=False)
 class Jump:
-    """Jump operator, of rigid blocks or of nodes: opening and slip u_b − u_a [m] per freedom, ``(np, nd)`` each."""
+    """Jump operator of rigid blocks or nodes: opening and slip u_b − u_a [m] per freedom, ``(np, nd)`` each."""
 
     opening: csr_array
     slip: csr_array
 
 
 def jump_operator(points: JointPoints, centroid: Array) -> Jump:
-    """Jumps at joint points from the motion of rigid blocks with the given centroids ``(nb, 2)`` [m]."""
+    """Jump operator at joint points of rigid blocks with the given centroids ``(nb, 2)`` [m]."""
     a, b = points.block.T
 
     def along(direction: Array) -> csr_array:
@@ -47,7 +47,7 @@ def jump_operator(points: JointPoints, centroid: Array) -> Jump:
 
 
 def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
-    """Held motion of each of a scene's pins, or of others, ``(n_pins, 3 nb)``."""
+    """Held motion of each of a scene's pins, or of other pins, ``(n_pins, 3 nb)``."""
     pins = scene.pins if pins is None else pins
     at_points = point_operator(pins.block, pins.point, pins.direction, scene.blocks.centroid)
     turn = coo_array((pins.turn, (np.arange(len(pins)), 3 * pins.block + 2)), shape=at_points.shape)
@@ -55,7 +55,7 @@ def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
 
 
 def tie_ends(scene: Scene) -> csr_array:
-    """Elongation of ties by their first ends alone, then by their second ones, ``(2 nt, 3 nb)``; zero of anchors."""
+    """Elongation of ties by their first ends alone, then by their second ends, ``(2 nt, 3 nb)``; zero for anchors."""
     ties, ends = scene.ties, []
     for end, sense in enumerate((-1.0, 1.0)):
         held = ties.block[:, end] != ANCHOR
@@ -94,7 +94,7 @@ def movable_freedoms(scene: Scene) -> Indices:
 
 
 def control_row(scene: Scene) -> Array:
-    """Displacement of the control point along the live load, per motion of the blocks, ``(3 nb,)``."""
+    """Operator of the control point's displacement along the live load, per motion of the blocks, ``(3 nb,)``."""
     block, at, direction = scene.control_point
     n = len(block)
     rows = point_operator(block, np.tile(at, (n, 1)), np.tile(direction, (n, 1)), scene.blocks.centroid)
@@ -102,10 +102,10 @@ def control_row(scene: Scene) -> Array:
 
 
 def sliding_dilates(scene: Scene, motion: Array) -> bool:
-    """Whether a mechanism ``(nb, 3)`` of associated joints opens some only because they slide.
+    """Whether some joints of an associated mechanism ``(nb, 3)`` open only because they slide.
 
-    None without friction does. Where no other does, joints that slide are off each other anyway and carry no friction:
-    forces and mechanism prove their load for friction without dilatancy just as well.
+    Frictionless joints never do. If no other joint does either, those that slide have separated anyway and carry no
+    friction: forces and mechanism then prove their load for friction without dilatancy, too.
     """
     points = wall_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)

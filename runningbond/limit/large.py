@@ -1,16 +1,16 @@
 """Certificates of large walls: two sequences from the associated pressures, by interior points.
 
-From corner to corner a program of more than some thousand points takes longer than afresh, and the simplex method may
-never see that there are no forces. What brings pressures up to date is solved by Clarabel to a rough tolerance. Its
-mechanism is a mix of all that collapse at that load; a corner is looked for, by HiGHS, where it is cheap or promises
-something:
+For programs of more than some thousand points, going on from vertex to vertex takes longer than a fresh start, and the
+simplex method may never detect that no forces exist. Programs that update pressures are therefore solved by Clarabel to
+a rough tolerance. Their mechanisms mix all those that collapse at the same load. A vertex is computed, by HiGHS, only
+where it is cheap or promising:
 
-- in the wall whose blocks are glued where they hardly move against each other (`macro`), which leaves some hundred
-  freedoms. Pressures that follow slowly pass by many such mechanisms of few parts;
-- in the wall itself, once there are forces that drive the mix but for its smallest jumps. Where the whole wall slides
-  and opens no coarse mechanism does, and pressures that follow at once come to rest soonest.
+- in the wall glued wherever its blocks barely move against each other (`macro`), which leaves some hundred degrees of
+  freedom. Pressures that are updated slowly pass many such mechanisms of few parts;
+- in the full wall, once there are forces that drive the mix except for its smallest jumps. If the whole wall slides and
+  opens, no coarse mechanism exists, and fully updated pressures converge soonest.
 
-Nothing is searched further: neither other starts nor a descent.
+There is no further search: neither other starts nor a descent.
 """
 
 from collections.abc import Iterator
@@ -26,31 +26,31 @@ from .macro import glue, still_points
 from .search_log import Observer, SearchLog
 from .sequences import averaged
 
-POINTS = 4500
-"""Joint points, six or so a block, from which a wall is searched so."""
+LARGE_POINTS = 4500
+"""Number of joint points, about six per block, from which a wall is searched in this way."""
 
-STILL = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
-"""Jumps, relative to the largest motion, below which points count as still when blocks are glued, in turn."""
+STILL_LEVELS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
+"""Levels of jumps, relative to the largest motion, below which points count as still when blocks are glued, in turn."""
 
-FREEDOMS = 700
-"""Most freedoms of a glued wall whose corner is looked for."""
+VERTEX_FREEDOMS = 700
+"""Largest number of degrees of freedom of a glued wall whose vertex is computed."""
 
-MIXED = 1e-4
-"""Jumps of a mix of mechanisms, relative to its largest motion, that a corner need not have."""
+MIX_TOLERANCE = 1e-4
+"""Jumps of a mix of mechanisms, relative to its largest motion, that its vertex need not have."""
 
 SLOW, AT_ONCE = (0.3, range(2, 4)), (1.0, range(4, 40))
-"""Weight of new pressures, and programs whose mechanisms are looked at, of the sequence that glues and of the other."""
+"""Weight of new pressures, and programs whose mechanisms are examined, of the sequence that glues and of the other."""
 
 
 def takes_one_start(system: Equilibrium) -> bool:
-    """Whether a wall is too large for more than this."""
-    return len(system.points) >= POINTS
+    """Whether a wall is too large for more than these two sequences."""
+    return len(system.points) >= LARGE_POINTS
 
 
 def search_large(system: Equilibrium, place: Array, observe: Observer) -> SearchLog:
-    """Run both sequences from the associated pressures, or up to a certificate, or Ctrl-C; loads are rough.
+    """Run both sequences from the associated pressures, until a certificate is found or Ctrl-C; loads are approximate.
 
-    Movable blocks have their centroids at `place` ``(n, 2)`` [m].
+    `place` are the centroids of the movable blocks ``(n, 2)`` [m].
     """
     found = SearchLog(starts=1)
     try:
@@ -66,7 +66,7 @@ def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search
 
 
 def _program(system: Equilibrium, pressure: Array, found: SearchLog) -> ForceSolution:
-    """A program of the sequences; HiGHS says whether one without an optimum has forces without end."""
+    """Solve a program of the sequences; without an optimum, HiGHS decides whether its forces are unbounded."""
     found.add_programs(1)
     forces = frozen_friction(system.strength, pressure)
     program = near(system, forces)
@@ -85,7 +85,7 @@ def _sequence(
     weight: float,
     looked_at: range,
 ) -> None:
-    """Bring pressures ``(np,)`` up to date until a mechanism is certified; blocks are glued if their place is known."""
+    """Update pressures ``(np,)`` until a mechanism is certified; blocks are glued if their place is given."""
     for k in range(looked_at.stop):
         if k:
             pressure = averaged(pressure, program.pressure, weight)
@@ -95,7 +95,7 @@ def _sequence(
         if k in looked_at:
             corners = _corners(system, place, pressure, program.motion, found)
             certified = (roughly_certified(system, corner, found.add_programs) for corner in corners)
-            found.certificates += islice(filter(None, certified), 1)  # of the first that forces near those here drive
+            found.certificates += islice(filter(None, certified), 1)  # only the first one certified
             if found.certificates:
                 return
         observe(found)
@@ -104,9 +104,9 @@ def _sequence(
 def _corners(
     system: Equilibrium, place: Array | None, pressure: Array, motion: Array, found: SearchLog
 ) -> Iterator[Array]:
-    """Mechanisms ``(nd,)`` at corners of the program of which a mix is given: of the glued wall, or of the wall."""
+    """Mechanisms ``(nd,)`` at vertices of the program whose mix is `motion`: of the glued wall, or of the full wall."""
     if place is None:
-        mixed = driving_forces(system, motion, MIXED)
+        mixed = driving_forces(system, motion, MIX_TOLERANCE)
         found.add_programs(1)
         if mixed is not None and near(system, mixed, "smallest").status == "optimal":
             corner = _corner(system, pressure, found)
@@ -114,9 +114,9 @@ def _corners(
                 yield corner.motion
         return
     last = 0
-    for least in STILL:
+    for least in STILL_LEVELS:
         glued = glue(system, place, still_points(system, motion, least))
-        if last < glued.system.freedoms <= FREEDOMS:
+        if last < glued.system.freedoms <= VERTEX_FREEDOMS:
             last = glued.system.freedoms
             corner = _corner(glued.system, pressure[glued.points], found)
             if corner.status == "optimal":

@@ -1,7 +1,7 @@
-"""Macro-blocks: blocks that move as one are glued into one, which leaves fewer equations and joint points.
+"""Macro-blocks: blocks that move together are glued into one, which leaves fewer equations and joint points.
 
-Whatever moves in a wall so glued moves in the wall itself too: a mechanism of the one is a mechanism of the other, at
-the same load. Its forces are balanced macro-block by macro-block, and say nothing of those inside.
+A mechanism of the glued wall is also a mechanism of the full wall, at the same load. Forces in the glued wall balance
+each macro-block; they do not determine the forces inside it.
 """
 
 from collections.abc import Sequence
@@ -15,17 +15,17 @@ from runningbond.joints import PointStrength
 from runningbond.scene import Array, Indices, Mask
 from runningbond.scene.arrays import components
 
-from .canonical import ENTRY, rounded
+from .canonical import ENTRY_DECIMALS, rounded
 from .certificates import Certificate
 from .equilibrium import Equilibrium
 
-POWER = 1.5
-"""Power of the freedoms as which a program costs."""
+COST_EXPONENT = 1.5
+"""Exponent of the degrees of freedom in the cost of a program."""
 
 
 @dataclass(frozen=True, eq=False)
 class Glued:
-    """The equations of a glued wall, its motions ``(nd, 3 n_macro)`` as those of the wall, and the points left."""
+    """The equations of a glued wall, its motions ``(nd, 3 n_macro)`` as those of the full wall, and the points left."""
 
     system: Equilibrium
     motions: csc_array
@@ -33,11 +33,11 @@ class Glued:
 
     @property
     def cost(self) -> float:
-        """What a program over it costs, in programs over the wall."""
-        return float((self.system.freedoms / self.motions.shape[0]) ** POWER)
+        """Cost of a program over the glued wall, in programs over the full wall."""
+        return float((self.system.freedoms / self.motions.shape[0]) ** COST_EXPONENT)
 
     def certificate(self, whole: Certificate) -> Certificate:
-        """A certificate of the wall as one of the glued wall, in which all that it moves is free to move."""
+        """Convert a certificate of the full wall, which must not move glued joints, to one of the glued wall."""
         least, most = (
             replace(each, pressure=each.pressure[self.points], tangential=each.tangential[self.points])
             for each in (whole.least, whole.most)
@@ -47,13 +47,13 @@ class Glued:
 
 
 def still_points(system: Equilibrium, motion: Array, least: float) -> Mask:
-    """Points ``(np,)`` that a mechanism ``(nd,)`` moves by less than a share of its largest motion."""
+    """Points ``(np,)`` whose jumps in a mechanism ``(nd,)`` are below a share of its largest motion."""
     jump = np.abs(system.jumps(motion)).max(axis=0)
     return np.asarray(jump < least * np.abs(motion).max(initial=0.0))
 
 
 def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
-    """Glue blocks that all their points, two at least, hold together; the equations are rounded as `canonical` does.
+    """Glue blocks between which all points, at least two, are still; equations are rounded as in `canonical`.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
     place : (n, 2) float
         Centroids of the movable blocks [m].
     still : (np,) bool
-        Points that do not move.
+        Points without jumps.
     """
     first, second = sides(system)
     n = len(place)
@@ -84,8 +84,8 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
             slip=rounded(csc_array(motions.T @ system.slip[:, kept])),
             tie=rounded(csc_array(motions.T @ system.tie)),
             reaction=rounded(csc_array(motions.T @ system.reaction)),
-            dead=np.round(motions.T @ system.dead, ENTRY),
-            live=np.round(motions.T @ system.live, ENTRY),
+            dead=np.round(motions.T @ system.dead, ENTRY_DECIMALS),
+            live=np.round(motions.T @ system.live, ENTRY_DECIMALS),
         ),
         motions,
         kept,
@@ -93,9 +93,9 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
 
 
 def freest(system: Equilibrium, place: Array, looseness: Array, levels: Sequence[float], freedoms: int) -> Glued | None:
-    """The wall glued below the least of some levels, which fall, that leaves no more than so many freedoms."""
+    """Glue points with `looseness` below the lowest of the falling `levels` that leaves at most so many freedoms."""
     low, high, result = 0, len(levels), None
-    while low < high:  # the fewer points are glued, the more freedoms are left
+    while low < high:  # fewer glued points leave more degrees of freedom
         middle = (low + high) // 2
         glued = glue(system, place, looseness < levels[middle])
         if glued.system.freedoms <= freedoms:
@@ -106,7 +106,7 @@ def freest(system: Equilibrium, place: Array, looseness: Array, levels: Sequence
 
 
 def sides(system: Equilibrium) -> tuple[Indices, Indices]:
-    """Movable blocks on both sides of each point, in order; their number stands for what is fixed."""
+    """Movable blocks on both sides of each point, in ascending order; their number stands for fixed blocks."""
     pattern = csc_array(abs(system.opening) + abs(system.slip))
     pattern.sort_indices()
     begin, end = pattern.indptr[:-1], pattern.indptr[1:]
@@ -115,7 +115,7 @@ def sides(system: Equilibrium) -> tuple[Indices, Indices]:
 
 
 def _motions(moving: Indices, macro: Indices, place: Array, scale: Array) -> csc_array:
-    """Displacement of each macro-block's middle, and its rotation by its size, as scaled motions of the blocks."""
+    """Displacement of each macro-block's centre, and its rotation times its size, as scaled motions of the blocks."""
     members = np.bincount(macro)
     middle = np.column_stack([np.bincount(macro, place[moving, k]) / members for k in (0, 1)])
     arm = place[moving] - middle[macro]

@@ -1,8 +1,9 @@
-"""Smaller loads near a certificate: all but some of the wall is glued, and what is left is searched from there.
+"""Smaller loads near a certificate: all of the wall except a part is glued, and that part is searched from there.
 
-A rare mechanism is mostly a frequent one with a few joints changed, which a search over the whole wall does not find
-because all of its starts end elsewhere. With the rest glued there are few freedoms, and programs take milliseconds;
-neighbourhoods of many places and sizes are searched one after the other (large neighbourhood search, Shaw 1998).
+A rare mechanism mostly differs from a frequent one in a few joints. A search over the whole wall does not find it,
+because all of its starts end elsewhere. With the rest glued there are few degrees of freedom, and programs take
+milliseconds; neighbourhoods of many places and sizes are searched one after another (large neighbourhood search, Shaw
+1998).
 """
 
 from collections.abc import Iterator
@@ -19,17 +20,17 @@ from .macro import Glued, freest, sides
 from .programs import Programs
 from .sequences import WEIGHTS, short_sequence
 
-NEARBY = 0.5
-"""Scatter of the logarithm of the pressures that sequences start from, beside the certificate's."""
+PRESSURE_SCATTER = 0.5
+"""Standard deviation of the logarithm of a sequence's initial pressures, relative to the certificate's."""
 
-PLACES = 6
-"""Decimals of distances, in sizes of the wall, that are looked at: a wall that is drawn larger has the same."""
+DISTANCE_DECIMALS = 6
+"""Decimals to which distances, in wall sizes, are rounded, so that a wall drawn larger yields the same numbers."""
 
 
 def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask, freedoms: int) -> Glued | None:
-    """The wall glued but where points move ``(np,)`` and near some, as near as leaves so many freedoms; None for none.
+    """Glue the wall except at moving points ``(np,)`` and near centres, leaving at most so many freedoms; None if none.
 
-    Nearness goes by the blocks, which have their centroids at `place` ``(n, 2)`` [m].
+    Distance is measured between blocks, whose centroids are at `place` ``(n, 2)`` [m].
     """
     of_centres = np.unique([side[centres] for side in sides(system)])
     distance = distances(system, place, place[of_centres[of_centres < len(place)]])
@@ -38,25 +39,25 @@ def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask
 
 
 def distances(system: Equilibrium, place: Array, centres: Array) -> Array:
-    """Distances ``(np,)`` of each point's nearer block from the nearest of some centres ``(n, 2)``, in wall sizes."""
+    """Distances ``(np,)`` from each point's nearer block to the nearest of some centres ``(n, 2)``, in wall sizes."""
     first, second = sides(system)
-    size = float(np.ptp(place, axis=0).max()) or 1.0  # of a single block nothing is far
+    size = float(np.ptp(place, axis=0).max()) or 1.0  # for a single block all distances are zero
     far = np.hypot(*(place[:, None] - centres).transpose(2, 0, 1)).min(axis=1) / size
-    of_blocks = np.append(np.round(far, PLACES), np.inf)
+    of_blocks = np.append(np.round(far, DISTANCE_DECIMALS), np.inf)
     return np.asarray(np.minimum(of_blocks[first], of_blocks[second]))
 
 
 def one_of(moving: Mask, rng: np.random.Generator) -> Mask:
-    """One of some points ``(np,)``."""
+    """Random choice of one of some points, as a mask ``(np,)``."""
     return np.asarray(np.arange(len(moving)) == rng.choice(np.flatnonzero(moving)))
 
 
 def certificates_near(
     glued: Glued, certificate: Certificate, programs: Programs, sequences: int, rng: np.random.Generator
 ) -> Iterator[Certificate]:
-    """Certificates of a glued wall that are found by its `programs`, from one of the wall that moves nothing glued.
+    """Certificates of a glued wall, found by its `programs` from a certificate that moves none of the glued joints.
 
-    So many `sequences` are run beside walks from that one and from the lowest.
+    They come from walks from that certificate, from so many `sequences`, and from walks from the lowest one found.
     """
     known = glued.certificate(certificate)
     descent, pressure, found = Descent(programs), known.least.pressure, list[Certificate]()
@@ -70,9 +71,9 @@ def certificates_near(
 def _from_sequences(
     descent: Descent, pressure: Array, sequences: int, rng: np.random.Generator
 ) -> Iterator[Certificate]:
-    """Certificates of sequences that start from pressures ``(np,)``, and near them, and those below."""
+    """Certificates of sequences that start from and near pressures ``(np,)``, and certificates at smaller loads."""
     for k in range(sequences):
-        start = pressure * rng.lognormal(0.0, NEARBY, len(pressure)) if k else pressure
+        start = pressure * rng.lognormal(0.0, PRESSURE_SCATTER, len(pressure)) if k else pressure
         for each in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
             yield each
             yield from descent.below(each.motion, each.least, rng)

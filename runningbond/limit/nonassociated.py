@@ -1,8 +1,8 @@
 """Limit analysis with true Coulomb friction: slip without dilatancy.
 
-Static and kinematic theorems no longer hold and the collapse load need not be unique. What is reported is proved by a
-certificate (`certificates`), and the smallest load is that of the lowest certificate that a search over many starts
-found (`search`); nobody knows how to prove that there is none below.
+The static and kinematic theorems no longer hold, and the collapse load need not be unique. Reported loads are proved by
+a certificate (`certificates`). The smallest load is that of the lowest certificate found by a search over many starts
+(`search`); no method is known to prove that there is none below.
 """
 
 import time
@@ -13,19 +13,19 @@ from functools import partial
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
 
-from .associated import LimitState, arrays_of, falling, judge, limit_state, remarks, so_far, spends_cut_strength
+from .associated import LimitState, arrays_of, dead_load_fall, judge, limit_state, remarks, so_far, uses_cut_strength
 from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify, least_multiplier
-from .coarse import POINTS, CoarseSearch
+from .coarse import COARSE_POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
 from .large import search_large, takes_one_start
-from .moving_support import JAMMED, NOTHING, bridged_message, is_bridged, may_leave, reaction_note
+from .moving_support import JAMMED, ZERO_SHARE, bridged_message, is_bridged, may_leave, reaction_note
 from .search import STARTS, search
 from .search_log import Observer, SearchLog
 
-LISTED = 4
-"""Intervals of certified loads, apart from each other, that a message lists; of more it tells the number."""
+LISTED_INTERVALS = 4
+"""Largest number of disjoint intervals of loads that a message lists; if there are more, it states their number."""
 
 
 def limit_nonassociated(
@@ -37,32 +37,32 @@ def limit_nonassociated(
     programs: int | None = None,
     observe: Observer = lambda found: None,
 ) -> Outcome:
-    """Limit analysis of a scene with true Coulomb friction.
+    """Run the limit analysis of a scene with true Coulomb friction.
 
     Parameters
     ----------
     scene, tolerance
-        The scene, and the relative width of the interval asked for. A wider one is reported as it is, for the load
+        The scene, and the required relative width of the interval. A wider interval is still reported, because the load
         itself is not unique.
     starts, workers
-        Most starts of the search, over the wall or, of larger ones, to find its parts, and how many are made at a time
-        where they can be, which changes nothing of what is found. Fewer are made where none of the last ones brought a
-        smaller load, and of very large walls one alone.
+        Largest number of starts of the search, over the wall or, for larger walls, to find its parts, and number of
+        starts run in parallel where possible, which does not change the result. Fewer are made if the last ones found
+        no smaller load, and only one for very large walls.
     programs
-        Linear programs after which no further start is made, those over parts of the wall counted by what they cost;
-        where they are not given, as many as take up to three quarters of a minute on walls of 150 to 600 blocks.
+        Number of linear programs after which no further start is made; those over parts of the wall count by their
+        cost. By default as many as take up to three quarters of a minute on walls of 150 to 600 blocks.
     observe
-        Is shown what the search has found, from time to time.
+        Called from time to time with what the search has found.
 
     Returns
     -------
     Outcome
-        `lower` and `upper` are the smallest and largest load at which a collapse was certified, and
-        `multiplier` is the smallest found; smaller ones are not excluded, and where several mechanisms were
-        certified at loads apart from each other the message says at which. `motion` and `force` belong to it.
-        Without a certificate the status is ``undecided`` and `upper` the associated load, which no true
-        collapse load exceeds. Of a support that moves, `multiplier` is the largest share of the dead load that it was
-        found to bear as the wall gives way, and the associated share is a lower bound.
+        `lower` and `upper` are the smallest and largest load at which a collapse was certified, and `multiplier` is the
+        smallest found; smaller ones are not excluded. If collapses were certified in disjoint intervals of load, the
+        message lists these. `motion` and `force` belong to `multiplier`. Without a certificate the status is
+        ``undecided`` and `upper` the associated load, which no true collapse load exceeds. For a moving support,
+        `multiplier` is the largest share of the dead load that it was found to carry at collapse, and the associated
+        share is a lower bound.
 
     Raises
     ------
@@ -71,11 +71,10 @@ def limit_nonassociated(
 
     Notes
     -----
-    A wall whose normal forces balance any multiple of the live load is ``unbounded``, which is proved: no mechanism
-    that does not interpenetrate gains power from the load. Where friction is needed for that, Coulomb's law allows
-    rest at every multiple, but it may allow a collapse as well, driven by other forces. Such a wall is ``unbounded``
-    if no collapse was certified and friction grew with the load in every program; the message says what is not
-    proved.
+    A wall whose normal forces balance any multiple of the live load is proved to be ``unbounded``: no mechanism without
+    interpenetration gains power from the load. If friction is needed for that, Coulomb's law allows rest at every
+    multiple, but perhaps also a collapse, driven by other forces. Such a wall is ``unbounded`` if no collapse was
+    certified and friction grew with the load in every program; the message states what is not proved.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -89,18 +88,18 @@ def limit_nonassociated(
         look = partial(_look, starts=starts, workers=workers, observe=observe, most=programs)
         outcome = _collapse(outcome, system, state, tolerance, look)
     elif status == "infeasible":
-        outcome = falling(outcome, state)
+        outcome = dead_load_fall(outcome, state)
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
 def _refuse_crushing(scene: Scene) -> None:
-    """Certificates know of no crushing: their forces may be more than such joints bear."""
+    """Refuse joints that crush: certificates neglect crushing, so their forces may exceed what such joints carry."""
     for material in scene.materials_of_joints:
         if material.compressive_strength is not None:
             key = f"{table_of(material)}.compressive_strength"
-            remedy = "is not taken by limit-nonassociated, which knows no crushing; limit, dem-dynamic and fem do"
+            remedy = "is not supported by limit-nonassociated, which models no crushing; limit, dem-dynamic and fem do"
             raise SceneError(key, remedy, material.compressive_strength)
 
 
@@ -111,7 +110,7 @@ def _collapse(
     tolerance: float,
     look: Callable[[Equilibrium, Array], SearchLog],
 ) -> Outcome:
-    """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
+    """Outcome of a wall that stands; mechanisms that dissipate energy at strengths that were cut are rejected."""
     cut = state.system
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
@@ -122,7 +121,7 @@ def _collapse(
     if not proved:
         return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
-    if cut.has_support and loads[-1][1] <= NOTHING and may_leave(cut):
+    if cut.has_support and loads[-1][1] <= ZERO_SHARE and may_leave(cut):
         return _bridged(outcome, cut)
     lowest, highest = proved[0], max(proved, key=lambda each: each.most.multiplier)
     least, multiplier, far = lowest.least, cut.load(lowest.least.multiplier), cut.load(highest.most.multiplier)
@@ -146,10 +145,10 @@ def _collapse(
 def _look(
     system: Equilibrium, place: Array, *, starts: int, workers: int, observe: Observer, most: int | None
 ) -> SearchLog:
-    """Search a wall whose movable blocks have their centroids at `place` ``(n, 2)`` [m], as its size asks for."""
+    """Search a wall, with its movable blocks' centroids at `place` ``(n, 2)`` [m], by the method for its size."""
     if takes_one_start(system):
         return search_large(system, place, observe)
-    if len(system.points) < POINTS or system.has_support:
+    if len(system.points) < COARSE_POINTS or system.has_support:
         searched = None if system.has_support else place
         return search(system, _associated(system), starts, workers, observe, most, place=searched)
     coarse = CoarseSearch(system, place, observe, workers, starts, most)
@@ -165,12 +164,12 @@ def _associated(system: Equilibrium) -> ForceSolution:
 
 
 def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: SearchLog) -> list[Certificate]:
-    """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations.
+    """Certificates by smallest load, the lowest and highest one proved on the unrounded equations.
 
-    What cannot be proved there is left out, and mechanisms that spend of strengths which `full` has more of.
+    Those that cannot be proved there, or dissipate energy at strengths cut from `full`, are left out.
     """
     certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
-    certificates = [each for each in certificates if not spends_cut_strength(full, system, each.motion, dilatancy=0.0)]
+    certificates = [each for each in certificates if not uses_cut_strength(full, system, each.motion, dilatancy=0.0)]
     proved: list[Certificate] = []
     for end in (_depth, _height):
         remaining = sorted(certificates, key=end)
@@ -200,13 +199,13 @@ def _height(certificate: Certificate) -> float:
 
 
 def _message(loads: list[tuple[float, float]], result: SearchLog, tolerance: float, *, falling: bool) -> str:
-    """What is proved, and how hard anything else was looked for."""
+    """Message on what is proved, and on the effort of the search."""
     lower, upper = loads[0][0], loads[-1][1]
     others, beyond = ("larger", "above") if falling else ("smaller", "below")
     message = f"collapse is certified at every load of the interval; {others} ones are not excluded"
     if len(loads) > 1:
         listed = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in loads)
-        if len(loads) > LISTED:
+        if len(loads) > LISTED_INTERVALS:
             listed = f"{len(loads)} intervals from {lower:.6g} to {upper:.6g}"
         message = f"collapse is certified at {listed}, and nothing is proved in between or {beyond}"
     elif upper - lower > tolerance * abs(upper):
@@ -232,7 +231,7 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
 
 
 def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bound: float | None) -> Outcome:
-    """Outcome of a wall without a certified collapse, under the associated multiplier if there is one."""
+    """Outcome of a wall without a certified collapse, bounded by the associated multiplier if there is one."""
     programs = f"no collapse certified from {_effort(result)}{_stopped(result)}"
     if result.frictionless:
         message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"

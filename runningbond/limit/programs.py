@@ -1,4 +1,4 @@
-"""The programs of the search over one wall: each kind one model, solved from corner to corner (`simplex`)."""
+"""Linear programs of the search over one wall: one model of each kind, solved from vertex to vertex (`simplex`)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -26,23 +26,23 @@ from .interior_point import near
 from .simplex import DUAL, INTERIOR, PRIMAL, Simplex
 
 NO_FORCE = 1e-7
-"""Force, in force units, that counts as none, and distance from the limit that counts as at it."""
+"""Force, and distance of a force from its limit, in force units, that counts as zero."""
 
 
 MOST_PIVOTS = 800
-"""Corners after which loads that drive a mechanism are given up, or taken as they are."""
+"""Simplex pivots after which loads that drive a mechanism are given up, or accepted as they are."""
 
-FARTHEST = 5_000
-"""Corners between two programs of a sequence beyond which interior point and crossover take over: in walls of 600
-blocks so many take longer than they."""
+SEQUENCE_PIVOTS = 5_000
+"""Simplex pivots between two programs of a sequence after which interior point and crossover take over; in walls of 600
+blocks so many pivots take longer than they do."""
 
 Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
-"""Corners from which the models of `Programs` start; None is nothing."""
+"""Vertices from which the models of `Programs` start; None starts without one."""
 
 
 @dataclass(eq=False)
 class Programs:
-    """Programs over the equations of a wall, and how many were solved; once `stopped` no other is."""
+    """Programs over the equations of a wall, with a count of those solved; no more are solved once `stopped` is set."""
 
     system: Equilibrium
     stopped: Event = field(default_factory=Event)
@@ -68,25 +68,25 @@ class Programs:
 
     @property
     def corners(self) -> Corners:
-        """The last corners of all models."""
+        """The last vertices of all models."""
         return [each.corner for each in self._models]
 
     def go_to(self, corners: Corners) -> None:
-        """Start from such corners, and depend on nothing that was solved before."""
+        """Start from such vertices, independently of all programs solved before."""
         for model, corner in zip(self._models, corners, strict=True):
             model.go_to(corner)
 
     def frozen(self, pressure: Array) -> ForceSolution:
-        """Forces at the largest load if shear resistances are those of a pressure ``(np,)``."""
+        """Forces at the largest load with shear resistances frozen at those of a pressure ``(np,)``."""
         forces = frozen_friction(self.system.strength, pressure)
-        found = self._solved(self._frozen, forces, sense=-1.0, pivots=FARTHEST)
+        found = self._solved(self._frozen, forces, sense=-1.0, pivots=SEQUENCE_PIVOTS)
         return found if found.status != "numerical" else self._solved(self._frozen, forces, sense=-1.0, method=INTERIOR)
 
     def extreme(self, forces: ForceSet, sense: float = 1.0, method: int = PRIMAL) -> ForceSolution:
-        """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most.
+        """Forces of a set with two rays per point at the smallest load, or with a `sense` of −1 at the largest.
 
-        Where the simplex method has passed so many corners without any such forces, it has not shown that there are
-        none: the interior point says so, if it is to be asked.
+        If the simplex method reaches its limit of pivots without finding such forces, this does not prove that there
+        are none; the interior point decides if `asks_interior_point`.
         """
         found = self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
         if found.status != "numerical" or not self.asks_interior_point:
@@ -98,17 +98,17 @@ class Programs:
     def corner(
         self, forces: ForceSet, weights: Array, multiplier: float | None = None, pivots: int | None = None
     ) -> ForceSolution:
-        """The corner of a set with the least sum of pressures, with weights ``(np,)``, or one on the way there.
+        """Vertex of a set with the smallest sum of weighted pressures, weights ``(np,)``, or one on the way there.
 
-        Balanced under a load or, of none, from the last load on under any.
+        The forces balance the given `multiplier` or, without one, any, starting from the last vertex.
         """
         return self._solved(self._driven, forces, weights=weights, multiplier=multiplier, method=PRIMAL, pivots=pivots)
 
     def mechanism(self, forces: ForceSolution, weights: Array) -> Array | None:
-        """An extreme mechanism ``(nd,)`` that forces drive, f_live · q = 1; None where there is none.
+        """An extreme mechanism ``(nd,)`` that forces drive, f_live · q = 1; None if there is none.
 
-        It minimises the sum of its jumps with weights ``(2 np,)``; the program is its dual, whose forces stay below
-        the weights.
+        It minimises the sum of its jumps with weights ``(2 np,)``. The program solved is its dual, whose forces are
+        bounded by the weights.
         """
         system, n, ties = self.system, len(self.system.points), len(self.system.tie_yield)
         limit = system.strength.shear + system.strength.friction * forces.pressure

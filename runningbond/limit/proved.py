@@ -1,6 +1,7 @@
-"""Associated limit analysis of large walls: an interior point, and the proof made of what it leaves.
+"""Associated limit analysis of large walls: an interior point, and the proof derived from its result.
 
-HiGHS's vertex is exact and, up to some two hundred blocks, found as fast; above, its cost grows faster.
+HiGHS computes an exact vertex, as fast as the interior point up to some two hundred blocks; beyond, its cost grows
+faster.
 """
 
 from dataclasses import replace
@@ -17,31 +18,32 @@ from .kinematics import movable_freedoms
 from .repair import admissible, balanced
 
 LARGE = 600
-"""Freedoms, three a block, from which the interior point is asked first."""
+"""Degrees of freedom, three per block, from which the interior point is tried first."""
 
 VERY_LARGE = 4500
-"""Freedoms from which the interior point is asked for less, and believed with a wider bracket."""
+"""Degrees of freedom from which a looser tolerance of the interior point and a wider bracket are accepted."""
 
 HUGE = 75_000
-"""Freedoms from which the interior point is stopped as soon as the bracket is narrow enough for use."""
+"""Degrees of freedom from which the interior point stops as soon as the bracket is narrow enough for practical use."""
 
 CLOSE, WIDE, WIDEST = 1e-6, 1e-4, 1e-2
-"""Relative width of the bracket with which the answer for a large, a very large and a huge wall is believed."""
+"""Relative width of the bracket up to which the result for a large, a very large and a huge wall is accepted."""
 
 STOP = {CLOSE: 1e-9, WIDE: 3e-7, WIDEST: 2e-5}
-"""Relative tolerance of the interior point that leads to such a bracket."""
+"""Relative tolerance of the interior point that leads to a bracket of such width."""
 
 ROUGH, FINE = 1e-4, 1e-6
-"""Relative tolerances with which forces of a wall at rest are looked for, in turn; they need not be extreme."""
+"""Relative tolerances, in turn, of the search for forces of a wall at rest, which need not be extreme."""
 
-OVERTURNED = 1e-6
-"""Share of a dead load's power, of all blocks without their signs, that it has to have left to prove a fall."""
+FALL_MARGIN = 1e-6
+"""Share of the dead load's power, summed as absolute values, by which the net power must exceed dissipation to prove a
+fall."""
 
 
 def resting_forces(system: Equilibrium) -> tuple[Array | None, InteriorPoint]:
-    """Forces, unknowns of a `force_program`, that balance the dead load strictly within all bounds; None if not found.
+    """Forces strictly within all bounds that balance the dead load, unknowns of a `force_program`; None if not found.
 
-    They prove that the wall stands. Beside them is the interior point that they were made of, or would have been.
+    They prove that the wall stands. Also returns the interior point from which they were, or were to be, derived.
     """
     program = force_program(system, coulomb(system.strength), "zero")
     for tolerance in (ROUGH, FINE):
@@ -53,24 +55,24 @@ def resting_forces(system: Equilibrium) -> tuple[Array | None, InteriorPoint]:
 
 
 def fall_at_rest(system: Equilibrium, point: InteriorPoint) -> Array | None:
-    """The interior point of `resting_forces` as a mechanism ``(nd,)`` that dissipates less than the load does.
+    """Mechanism ``(nd,)`` from the interior point of `resting_forces` with less dissipation than power of the load.
 
-    It proves that no admissible forces balance the dead load; None if it is none.
+    It proves that no admissible forces balance the dead load; None if it does not.
     """
     program = force_program(system, coulomb(system.strength), "zero")
     motion = admissible(program, point) if point.status == "infeasible" else None
     if motion is None:
         return None
     power, gained = float(np.abs(system.dead) @ np.abs(motion)), float(system.dead @ motion)
-    return motion if system.dissipated(motion) < gained - OVERTURNED * power else None
+    return motion if system.dissipated(motion) < gained - FALL_MARGIN * power else None
 
 
 def proved(system: Equilibrium, resting: Array | None, tolerance: float | None = None) -> ForceSolution:
     """Solve the associated limit analysis; the status is ``optimal`` for exact forces and mechanism only.
 
-    Ctrl-C leaves those that are near by then, if any are, and the status is ``budget``. `resting` are forces of
-    the same system before its live load (`Equilibrium.under_dead_load`), `tolerance` that of the interior point, from
-    `STOP` by the wall's size where it is not given.
+    Ctrl-C returns approximate ones, if there are any, with status ``budget``. `resting` are forces of the same system
+    before its live load (`Equilibrium.under_dead_load`); `tolerance` is that of the interior point, by default from
+    `STOP` by the size of the wall.
     """
     tolerance = STOP[tolerance_of(system)] if tolerance is None else tolerance
     forces = coulomb(system.strength)
@@ -91,7 +93,7 @@ def proved(system: Equilibrium, resting: Array | None, tolerance: float | None =
 
 
 def nearly_extreme(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution | None:
-    """Forces of a set in balance, at nearly the largest or smallest multiplier; None if none were found."""
+    """Balanced forces of a set at nearly the largest or smallest multiplier; None if not found."""
     program = force_program(system, forces, aim)
     point = interior_point(program, STOP[CLOSE])
     found = balanced(program, point, None) if point.status == "optimal" else None
@@ -99,14 +101,15 @@ def nearly_extreme(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolu
 
 
 def tolerance_of(system: Equilibrium) -> float:
-    """Relative width of the bracket, `CLOSE`, `WIDE` or `WIDEST`, with which an answer is believed."""
+    """Relative width of the bracket, `CLOSE`, `WIDE` or `WIDEST`, up to which a result is accepted."""
     return CLOSE if system.freedoms < VERY_LARGE else WIDE if system.freedoms < HUGE else WIDEST
 
 
 def loaded(system: Equilibrium, program: dict[str, Any], resting: Array) -> Array:
-    """Forces of the wall at rest as unknowns of a program of the system under its live load.
+    """Convert forces of the wall at rest to unknowns of a program of the system under its live load.
 
-    What is held later holds nothing yet; what a support bears of them is their multiplier.
+    Motions that are held later have no reaction yet; for a moving support the multiplier is what it carries of these
+    forces.
     """
     late = system.reaction.shape[1] - len(system.scene.pins)
     forces = np.concatenate([resting[:-1], np.zeros(late), [0.0]])
@@ -118,5 +121,5 @@ def loaded(system: Equilibrium, program: dict[str, Any], resting: Array) -> Arra
 
 
 def is_large(system: Equilibrium) -> bool:
-    """Whether the interior point is asked first."""
+    """Whether the interior point is tried first."""
     return len(movable_freedoms(system.scene)) >= LARGE

@@ -1,11 +1,10 @@
-"""Proofs from the approximate answer of an interior point: balanced forces, and a mechanism that obeys the flow rule.
+"""Proofs from the approximate result of an interior point: balanced forces, and a mechanism that obeys the flow rule.
 
-Both are corrected in the metric of the interior point's last step, where what is far from its bounds gives way first.
-Forces are balanced by weighted least squares, and moved towards those of the wall at rest, well inside all bounds, by
-as much as brings all of them inside; where no such forces are known, those that leave their bounds are held there, and
-the others balanced again. The mechanism is fitted, again and again, to reduced costs that are nowhere
-negative; points that go on closing count ten times more from time to time. The results are judged by what they are,
-to `ROUNDING`.
+Both are corrected in the metric of the interior point's last step, in which unknowns far from their bounds change most.
+Forces are balanced by weighted least squares. If forces of the wall at rest, well inside all bounds, are known, the
+result is moved towards them just until all forces are within bounds. Otherwise forces that leave their bounds are held
+there, and the others balanced again. The mechanism is fitted repeatedly to nonnegative reduced costs; the weight of
+points that keep closing is increased tenfold from time to time. The results are checked directly, to `ROUNDING`.
 """
 
 import math
@@ -21,20 +20,20 @@ from runningbond.scene import Array
 from .interior_point import InteriorPoint
 
 ROUNDING = 1e-11
-"""Imbalance relative to the largest force, and closing relative to the largest motion, that count as rounding."""
+"""Imbalance relative to the largest force, and closing relative to the largest motion, accepted as rounding errors."""
 
 ROUNDS, STEPS = 12, 40
-"""Metrics in which forces are balanced until all are inside, or a mechanism is corrected until none of its points
-closes, and corrections of a mechanism in each."""
+"""Largest number of metrics in which forces are balanced or a mechanism is corrected, and corrections of a mechanism in
+each metric."""
 
-HEAVIEST = 1e10
-"""Largest weight of a point that goes on closing; with larger ones the others are lost beside it."""
+MAX_WEIGHT = 1e10
+"""Largest weight of a point that keeps closing; larger ones would swamp the others."""
 
-HELD = 1e-6
-"""How much stiffer a force becomes that has left its bounds."""
+HELD_COMPLIANCE = 1e-6
+"""Factor on the compliance of a force that has left its bounds."""
 
-DAMPING = 1e-13
-"""Stiffness, relative, of motions that no force resists."""
+REGULARISATION = 1e-13
+"""Relative stiffness added to motions that no force resists."""
 
 Solve = Callable[[Array], tuple[Array, float]]
 
@@ -42,22 +41,22 @@ Solve = Callable[[Array], tuple[Array, float]]
 def metric(program: dict[str, Any], weights: Array) -> Solve:
     """Factorise A W Aᵀ, bordered by the column of the multiplier, the last one, which takes what no force balances.
 
-    The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ; to no numbers if singular.
+    The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ; to NaN if singular.
     """
     matrix = program["A_eq"]
-    forces = matrix[:, :-1]  # the last column is full, and so would be the product
+    forces = matrix[:, :-1]  # the last column is full, and would make the product full
     stiffness = csc_array((forces * weights[None, :-1]) @ forces.T)
     scale = 1 / np.sqrt(stiffness.diagonal() + np.finfo(float).tiny)
-    stiffness = csc_array(stiffness * scale[:, None] * scale[None] + DAMPING * eye_array(len(scale)))
+    stiffness = csc_array(stiffness * scale[:, None] * scale[None] + REGULARISATION * eye_array(len(scale)))
     fixed = program["bounds"][-1, 0] == program["bounds"][-1, 1]
     column = np.zeros(len(scale)) if fixed else matrix[:, [-1]].toarray()[:, 0] * scale
     size = float(np.abs(column).max()) or 1.0
     border = csc_array(column[:, None] / size)
-    parts: list[list[csc_array]] = [[stiffness, border], [csc_array(border.T), csc_array([[-DAMPING]])]]
+    parts: list[list[csc_array]] = [[stiffness, border], [csc_array(border.T), csc_array([[-REGULARISATION]])]]
     bordered = csc_array(block_array(parts))
     try:
         factors = splu(bordered, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError:  # so SuperLU says that a pivot is zero
+    except RuntimeError:  # raised by SuperLU for a zero pivot
         return lambda right: (np.full_like(right, np.nan), math.nan)
 
     def solve(right: Array) -> tuple[Array, float]:
@@ -68,9 +67,9 @@ def metric(program: dict[str, Any], weights: Array) -> Solve:
 
 
 def balanced(program: dict[str, Any], point: InteriorPoint, resting: Array | None) -> Array | None:
-    """Forces ``(n,)`` in balance within their bounds, near an interior point's; None if there is no way to them.
+    """Balanced forces ``(n,)`` within their bounds, near those of an interior point; None if not found.
 
-    `resting` are forces in balance strictly within the bounds, at any multiplier.
+    `resting` are balanced forces strictly within the bounds, at any multiplier.
     """
     matrix, weights, forces = program["A_eq"], point.compliance.copy(), point.forces.copy()
     weights[-1] = 0.0
@@ -87,20 +86,20 @@ def balanced(program: dict[str, Any], point: InteriorPoint, resting: Array | Non
             return inside
         if resting is not None or not np.isfinite(inside).all():
             return None
-        weights[inside != forces] *= HELD
+        weights[inside != forces] *= HELD_COMPLIANCE
         forces = inside
     return None
 
 
-def _room(program: dict[str, Any], forces: Array) -> Array:
+def _distance_to_bounds(program: dict[str, Any], forces: Array) -> Array:
     """Distance of forces ``(n,)`` from the nearer of their bounds, negative beyond it."""
     low, high = program["bounds"].T
     return np.asarray(np.minimum(forces - low, high - forces))
 
 
 def _inside(program: dict[str, Any], forces: Array, resting: Array) -> Array:
-    """The first of a row of mixes of two states of force that is within the bounds."""
-    here, there = _room(program, forces), _room(program, resting)
+    """Interpolate from forces towards those at rest, just until all are within the bounds."""
+    here, there = _distance_to_bounds(program, forces), _distance_to_bounds(program, resting)
     beyond = here < 0
     if not beyond.any():
         return forces
@@ -109,7 +108,7 @@ def _inside(program: dict[str, Any], forces: Array, resting: Array) -> Array:
 
 
 def admissible(program: dict[str, Any], point: InteriorPoint) -> Array | None:
-    """Mechanism ``(m,)`` near an interior point's whose points open as the flow rule says; None if none was found."""
+    """Mechanism ``(m,)`` near that of an interior point that obeys the flow rule; None if not found."""
     matrix, cost, (low, high) = program["A_eq"], program["c"], program["bounds"].T
     half, free = np.isfinite(low) & np.isinf(high), np.isinf(low)
     half[-1], free[-1] = False, False
@@ -117,7 +116,7 @@ def admissible(program: dict[str, Any], point: InteriorPoint) -> Array | None:
     weights[-1] = 0.0
     rounding = ROUNDING * float(np.abs(motion).max())
     for k in range(ROUNDS):
-        slack = point.slack if k < 3 else 0.0  # where blocks wedge each other, no motion opens their points
+        slack = point.slack if k < 3 else 0.0  # if blocks wedge each other, no motion opens their points
         solve = metric(program, weights)
         for _ in range(STEPS):
             if not np.isfinite(motion).all():  # the metric was singular
@@ -129,7 +128,7 @@ def admissible(program: dict[str, Any], point: InteriorPoint) -> Array | None:
             goal = np.where(half, np.maximum(reduced, slack), np.where(free, 0.0, reduced))
             last = motion
             motion = motion + solve(matrix @ (weights * (reduced - goal)))[0]
-        if max(held, -reduced[closing].min(initial=0.0)) <= rounding:  # there is no motion that opens all of them
+        if max(held, -reduced[closing].min(initial=0.0)) <= rounding:  # no motion opens all of these points
             return last
-        weights[closing] = (10 * weights[closing]).clip(max=HEAVIEST)
+        weights[closing] = (10 * weights[closing]).clip(max=MAX_WEIGHT)
     return None

@@ -1,11 +1,11 @@
-"""The smallest load at which a collapse with true Coulomb friction can be certified, looked for from many starts.
+"""Search, from many starts, for the smallest load at which a collapse with true Coulomb friction can be certified.
 
-What a sequence of programs settles at depends on the pressure that it starts from (`sequences`). From every
-certificate `descent` goes on to smaller loads. Finding the smallest of all is a program with complementarity
-constraints, for which nothing better than looking is known; no lower bound comes of it.
+The mechanism at which a sequence of programs settles depends on the pressure that it starts from (`sequences`). From
+every certificate `descent` continues to smaller loads. Finding the smallest load of all is a program with
+complementarity constraints, for which nothing better than a search is known; it yields no lower bound.
 
-Starts are made in rounds. Those of a round know what was found before it and nothing of each other, so that what is
-found does not depend on how many are made at a time.
+Starts are made in rounds. Starts of one round use what was found before it, but not what the others find, so that the
+result does not depend on the number of parallel workers.
 """
 
 from collections.abc import Sequence
@@ -23,26 +23,26 @@ from .search_log import Observer, SearchLog
 from .starts import ORIGINS, ROUND, Start
 
 STARTS = 160
-"""Most starts."""
+"""Largest number of starts."""
 
-DRY = 2 * ROUND * len(ORIGINS)
-"""Starts in a row that bring nothing lower, every way to start twice, after which the search ends."""
+MAX_DRY_STARTS = 2 * ROUND * len(ORIGINS)
+"""Consecutive starts without a lower load after which the search ends: every kind of start twice."""
 
-AFFORDED = 22_000
-"""Joint points up to which one program more is afforded: programs cost as the power of 2.5 of the points."""
+AFFORDED_POINTS = 22_000
+"""Joint points up to which one program beyond 20 is allowed; programs cost as the power of 2.5 of the points."""
 
-MANY_CORNERS = 2500
-"""Joint points from which mechanisms that the simplex method gives up are not left for other starts."""
+PATIENT_POINTS = 2500
+"""Joint points from which the interior point decides, at once, on mechanisms that the simplex method gives up."""
 
 
 def programs_allowed(system: Equilibrium) -> int:
-    """Programs after which no further start is made: fewer where each costs more, so that all cost about as much."""
-    return 20 + int((AFFORDED / max(1, len(system.points))) ** 2.5)
+    """Number of programs after which no further start is made, chosen so that all walls cost about as much."""
+    return 20 + int((AFFORDED_POINTS / max(1, len(system.points))) ** 2.5)
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Starts in a row that bring nothing lower, after which the search ends: fewer where there is little to find."""
-    return min(DRY, max(8, 2 * system.freedoms))
+    """Consecutive starts without a lower load after which the search ends: fewer for walls of few freedoms."""
+    return min(MAX_DRY_STARTS, max(8, 2 * system.freedoms))
 
 
 def search(
@@ -55,18 +55,18 @@ def search(
     found: SearchLog | None = None,
     place: Array | None = None,
 ) -> SearchLog:
-    """Look for certificates from many starts, seeded; a keyboard interrupt keeps those that were found.
+    """Search for certificates from many seeded starts; a keyboard interrupt keeps those that were found.
 
-    `observe` is shown what was found after every round; starts are made by so many `workers` at a time, and none after
-    the `most` linear programs, `programs_allowed` where they are not given. What was `found` before is added to.
-    Where movable blocks have their centroids at a `place` ``(n, 2)`` [m], neighbourhoods are searched too.
+    `observe` is called after every round; `workers` starts run in parallel, and none begins after `most` linear
+    programs (by default `programs_allowed`). The results are added to those `found` before. If the centroids of movable
+    blocks are given as `place` ``(n, 2)`` [m], neighbourhoods are searched, too.
     """
     found = SearchLog() if found is None else found
     found.dry, made, stopped = 0, 0, Event()
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
     corners: Corners = (None, None, None)
-    patient = len(system.points) >= MANY_CORNERS
+    patient = len(system.points) >= PATIENT_POINTS
     most = found.cost + programs_allowed(system) if most is None else most
     while made < starts:
         for programs in crew:
@@ -90,7 +90,7 @@ def search(
         if found.dry >= dry_allowed(system) or found.cost > most:
             if patient or found.certificates:
                 break
-            patient = True  # what was given up may be all there is
+            patient = True  # the mechanisms that were given up may be the only ones
             known.clear()
     return found
 

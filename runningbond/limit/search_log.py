@@ -1,4 +1,4 @@
-"""What a search for certificates has found so far, and what it has cost."""
+"""Results and cost so far of a search for certificates."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,24 +10,24 @@ from .certificates import Certificate, least_multiplier
 
 @dataclass(eq=False)
 class SearchLog:
-    """What a search has found.
+    """Results of a search.
 
     Parameters
     ----------
     certificates
         Every collapse that was proved.
     starts, programs
-        Starts, and linear programs solved.
+        Number of starts, and of linear programs solved.
     cost
-        Those programs, where glued walls were searched by what they cost beside the wall's own.
+        Cost of these programs in programs of the full wall; those of glued walls cost less.
     dry
-        Starts in a row, the last ones, that brought nothing lower.
+        Number of consecutive last starts that found no lower load.
     frictionless
         Whether normal forces alone carry any multiple of the live load.
     growing
-        Whether each program of a full sequence carried more than the one before: friction grew with the load.
+        Whether each program of a full sequence carried more than the one before, i.e. friction grew with the load.
     interrupted
-        Whether it was stopped before its end.
+        Whether the search was stopped before its end.
     """
 
     certificates: list[Certificate] = field(default_factory=list)
@@ -46,7 +46,7 @@ class SearchLog:
 
     @property
     def lowest(self) -> float:
-        """Its multiplier; infinite without one."""
+        """Multiplier of the lowest certificate; infinite without one."""
         return np.inf if self.best is None else self.best.least.multiplier
 
     @property
@@ -55,7 +55,7 @@ class SearchLog:
         return max((each.most.multiplier for each in self.certificates), default=-np.inf)
 
     def add_programs(self, number: int, cost: float = 1.0) -> None:
-        """Take note of programs that were solved, and of what each cost."""
+        """Record solved programs and the cost of each."""
         self.programs += number
         self.cost += number * cost
 

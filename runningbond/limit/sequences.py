@@ -1,8 +1,8 @@
 """Sequences of programs that end at a mechanism which can be certified, after Gilbert, Casapulla & Ahmed (2006).
 
-Each program freezes every point's shear resistance at μ times a pressure that is brought up to date between programs:
-averaged with weights (k + 1)^(−1/2) in program k, which settles where fixed weights keep wandering, or with fixed ones,
-which settle elsewhere. What a sequence settles at depends on the pressure that it starts from.
+Each program freezes the shear resistance of every point at μ times a pressure, which is updated between programs. The
+update averages old and new pressures, with weights (k + 1)^(−1/2) in program k, which converge where fixed weights may
+oscillate, or with fixed weights, which converge to other mechanisms. The result depends on the initial pressure.
 """
 
 from collections.abc import Iterator
@@ -15,10 +15,10 @@ from .force_program import Aim, ForceSet, ForceSolution
 from .simplex import PRIMAL
 
 SHORT = 16
-"""Programs after which a short sequence ends without a certificate."""
+"""Largest number of programs of a short sequence."""
 
 WEIGHTS = (0.6, 1.0, None, 0.3)
-"""Fixed weights of a new pressure in short sequences, in turn; None is (k + 1)^(−1/2)."""
+"""Weights of the new pressure in short sequences, used in turn; None stands for (k + 1)^(−1/2)."""
 
 
 def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> Iterator[Certificate]:
@@ -29,7 +29,7 @@ def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> I
             return
         known = len(descent.known)
         if descent.least(program.motion) is not None:
-            if len(descent.known) > known:  # or it was gone on from before
+            if len(descent.known) > known:  # otherwise the search has continued from it before
                 certificate = certified(descent, program.motion)
                 if certificate is not None:
                     yield certificate
@@ -38,7 +38,7 @@ def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> I
 
 
 def certified(descent: Descent, motion: Array) -> Certificate | None:
-    """The loads that drive a mechanism ``(nd,)``; None where there are none. Of loads without end, the least counts."""
+    """Find the loads that drive a mechanism ``(nd,)`` as `certify` does, by programs of the search."""
 
     def extreme(forces: ForceSet, aim: Aim) -> ForceSolution | None:
         return descent.least(motion) if aim == "smallest" else descent.programs.extreme(forces, -1.0, PRIMAL)
@@ -47,5 +47,5 @@ def certified(descent: Descent, motion: Array) -> Certificate | None:
 
 
 def averaged(pressure: Array, new: Array, weight: float) -> Array:
-    """Pressures ``(np,)`` for the next program, from those before and those found."""
+    """Weighted mean of old and new pressures ``(np,)``, for the next program."""
     return (1 - weight) * pressure + weight * new

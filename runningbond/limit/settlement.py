@@ -1,4 +1,4 @@
-"""The reaction share of a support that moves: what it still bears of the wall's dead load."""
+"""Reaction of a moving support as a share of the wall's dead load."""
 
 import numpy as np
 
@@ -8,14 +8,15 @@ from .kinematics import dead_load
 
 
 def reaction_unit(scene: Scene) -> float:
-    """Work [J] in which that of a moving support's reaction, against its motion at λ = 1, is the share λ.
+    """Unit [J] in which the work of a moving support's reaction, against its motion at λ = 1, is the share λ.
 
-    The resultant of all dead loads on movable blocks, times the largest displacement of an end of the support's joints.
+    It is the resultant of all dead loads on movable blocks times the largest displacement of a joint end on the
+    support.
 
     Raises
     ------
     SceneError
-        For blocks without any resultant load: nothing follows the support.
+        If the blocks have no resultant load, because then nothing follows the support.
     """
     weight = float(np.hypot(*dead_load(scene).reshape(-1, 3)[~scene.fixed, :2].sum(axis=0)))
     if weight <= 0:

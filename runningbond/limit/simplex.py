@@ -1,8 +1,8 @@
-"""A linear program that is solved again and again with other bounds and costs, each time from the last one's corner.
+"""A linear program that is solved repeatedly with other bounds and costs, each time from the last vertex.
 
-Where bounds change, a corner stays optimal but for them, and the dual simplex method goes on from it; where costs
-change it stays admissible, and the primal one does. Beside a cold start with presolve, interior point and crossover
-that is two to ten times cheaper up to some hundred blocks (`scipy.optimize.linprog` has no such entry, hence highspy).
+If bounds change, the last vertex stays dual feasible, and the dual simplex method continues from it; if costs change,
+it stays primal feasible, and the primal method does. Up to some hundred blocks this costs two to ten times less than a
+cold start with presolve, interior point and crossover (`scipy.optimize.linprog` has no warm start, hence highspy).
 """
 
 import highspy
@@ -14,22 +14,22 @@ from runningbond.scene import Array
 from .force_program import ProgramStatus
 
 DUAL, PRIMAL = 1, 4
-"""HiGHS's numbers of the simplex methods."""
+"""HiGHS's numbers of the dual and primal simplex method."""
 
 INTERIOR = 0
-"""Interior point and crossover instead, which start from no corner but end at one."""
+"""Method number for interior point and crossover, which start from no vertex but end at one."""
 
 OPTIONS: dict[str, bool | int | float | str] = {
     "threads": 1,
     "parallel": "off",
     "presolve": "off",
     "solver": "simplex",
-    "simplex_scale_strategy": 0,  # `Equilibrium` has scaled the equations; scaled again, infeasibility stays unseen
-    "primal_simplex_bound_perturbation_multiplier": 0.0,  # or corners on the way are not within bounds
+    "simplex_scale_strategy": 0,  # `Equilibrium` has scaled the equations; more scaling hides infeasibility
+    "primal_simplex_bound_perturbation_multiplier": 0.0,  # otherwise intermediate vertices violate bounds
 }
 
-WIDE, FINE = 1e4, 1e-9
-"""Largest coefficient above which HiGHS's tolerance, else 1e-7, is finer: forces of a small block on a huge one."""
+LARGE_COEFFICIENT, FINE_TOLERANCE = 1e4, 1e-9
+"""Largest coefficient above which HiGHS's tolerances are finer than 1e-7, for a small block's forces on a huge one."""
 
 _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
     highspy.HighsModelStatus.kOptimal: "optimal",
@@ -40,7 +40,7 @@ _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
 
 
 class _Quiet(highspy.Highs):
-    """HiGHS that prints nothing: 1.16 announces itself to standard output before an option can be set."""
+    """HiGHS without output: version 1.16 prints a banner to standard output before an option can be set."""
 
     def enableCallbacks(self) -> None:  # noqa: N802 - HiGHS's own name, of the last call that its making takes
         self.setOptionValue("output_flag", False)
@@ -48,7 +48,7 @@ class _Quiet(highspy.Highs):
 
 
 class Simplex:
-    """min c·x, A x = b, low ≤ x ≤ high, with the matrix ``(m, n)`` and right-hand side ``(m,)`` of all programs."""
+    """min c·x, A x = b, low ≤ x ≤ high; all programs share the matrix ``(m, n)`` and right-hand side ``(m,)``."""
 
     def __init__(self, matrix: csc_array, right: Array) -> None:
         rows, self._size = matrix.shape
@@ -64,18 +64,18 @@ class Simplex:
         self._highs = _Quiet()  # type: ignore[no-untyped-call]
         for name, value in OPTIONS.items():
             self._highs.setOptionValue(name, value)
-        if np.abs(matrix.data).max(initial=0.0) > WIDE:
-            self._highs.setOptionValue("primal_feasibility_tolerance", FINE)
-            self._highs.setOptionValue("dual_feasibility_tolerance", FINE)
+        if np.abs(matrix.data).max(initial=0.0) > LARGE_COEFFICIENT:
+            self._highs.setOptionValue("primal_feasibility_tolerance", FINE_TOLERANCE)
+            self._highs.setOptionValue("dual_feasibility_tolerance", FINE_TOLERANCE)
         self._highs.passModel(program)
 
     @property
     def corner(self) -> highspy.HighsBasis:
-        """The last program's corner."""
+        """Final vertex of the last program."""
         return self._highs.getBasis()
 
     def go_to(self, corner: highspy.HighsBasis | None) -> None:
-        """Start the next program from a corner, or from nothing, so that it does not depend on those before."""
+        """Start the next program from a vertex, or from none, so that it does not depend on earlier programs."""
         self._highs.clearSolver()
         if corner is not None and corner.valid:
             self._highs.setBasis(corner)
@@ -83,9 +83,10 @@ class Simplex:
     def solve(
         self, low: Array, high: Array, cost: Array, method: int = DUAL, pivots: int | None = None
     ) -> tuple[ProgramStatus, Array, Array]:
-        """Status, x ``(n,)`` and multipliers of equations ``(m,)`` of a program.
+        """Return status, x ``(n,)`` and multipliers of equations ``(m,)`` of a program.
 
-        After so many `pivots` the status is ``budget``, and x a corner but not the best, if the method is primal.
+        After `pivots` iterations the status is ``budget``; with the primal method x is then a feasible vertex, but not
+        optimal.
         """
         highs = self._highs
         highs.setOptionValue("solver", "ipm" if method == INTERIOR else "simplex")

@@ -1,7 +1,7 @@
-"""One start of a search for certificates: the pressures it is made from, and where it goes from there.
+"""One start of a search for certificates: its initial pressures, and the search that begins from them.
 
-Random pressures bring the first certificates. Smaller loads are mostly found beside those that are known: by sequences
-from a certificate's pressures, scattered everywhere or near one block, and in neighbourhoods (`neighbourhood`).
+Random pressures yield the first certificates. Smaller loads are mostly found near known certificates: by sequences from
+their pressures, scattered everywhere or near one block, and in neighbourhoods (`neighbourhood`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,19 +23,19 @@ from .search_log import SearchLog
 from .sequences import WEIGHTS, averaged, certified, short_sequence
 
 PROGRAM_BUDGET = 40
-"""Programs of the first start's sequence after which it ends without a certificate."""
+"""Number of programs after which the first start's sequence ends without a certificate."""
 
 CERTIFIED_IN_A_ROW = 3
-"""Certificates in a row that end the first start's sequence."""
+"""Consecutive certificates that end the first start's sequence."""
 
-PIVOTS = 400
-"""Corners passed on the way to random forces to start from."""
+START_PIVOTS = 400
+"""Largest number of simplex pivots to the random forces that a sequence starts from."""
 
 ROUND = 4
-"""Starts of a round."""
+"""Number of starts in a round."""
 
 Origin: TypeAlias = Literal["random", "balanced", "known", "neighbourhood"]
-"""What a start is made from: random pressures, those that balance a random load, or those of a certificate."""
+"""Initial pressures of a start: random, in balance with a random load, of a certificate, or near one."""
 
 ORIGINS: tuple[Origin, ...] = (
     *("random", "balanced", "known", "neighbourhood"),
@@ -43,35 +43,35 @@ ORIGINS: tuple[Origin, ...] = (
 )
 """Origins of the rounds, in turn."""
 
-LOWEST = 0.5
-"""Share of the certificates started from that are the lowest."""
+LOWEST_SHARE = 0.5
+"""Probability that a start from a known certificate takes the lowest one."""
 
 SCATTER = 0.3, 1.5
-"""Least and most scatter of the logarithm of the pressures started from, beside a certificate's."""
+"""Range of the standard deviation of the logarithm of initial pressures, relative to a certificate's."""
 
 LOCAL, RADIUS = 0.5, (0.15, 0.6)
-"""Share of such pressures that are scattered near one block alone, and how near at least and at most, in wall sizes."""
+"""Probability that these are scattered near one block only, and range of the radius around it, in wall sizes."""
 
-AROUND, SEQUENCES = (0.15, 0.5), 3
-"""Least and most freedoms of a neighbourhood, beside the wall's, and sequences in it."""
+NEIGHBOURHOOD_SIZE, NEIGHBOURHOOD_SEQUENCES = (0.15, 0.5), 3
+"""Range of the degrees of freedom of a neighbourhood, relative to the wall's, and sequences run in it."""
 
 
 @dataclass(eq=False)
 class Start:
-    """One start of a search, numbered from 0, from which it goes down as far as it gets.
+    """One start of a search, followed by a descent to loads as small as it finds.
 
     Parameters
     ----------
     number, associated
-        Its number, and the associated solution.
+        Number of the start, from 0, and the associated solution.
     before
-        Certificates from before its round, from the lowest up.
+        Certificates found before its round, in ascending order of load.
     known
-        What mechanisms have led to.
+        Forces at the smallest load of mechanisms already solved, by jump pattern.
     place
-        Centroids of the movable blocks ``(n, 2)`` [m], where neighbourhoods are to be searched.
+        Centroids of the movable blocks ``(n, 2)`` [m], if neighbourhoods are to be searched.
     corners
-        Where its programs start from.
+        Vertices from which its programs start.
     """
 
     number: int
@@ -83,7 +83,7 @@ class Start:
     found: SearchLog = field(default_factory=SearchLog)
 
     def run(self, programs: Programs) -> None:
-        """Look for certificates, and write down what is found as it is found."""
+        """Search for certificates, and record them as they are found."""
         solved = programs.solved
         programs.go_to(self.corners)
         descent, rng = Descent(programs, self.known), np.random.default_rng([0, self.number + 1])
@@ -92,7 +92,7 @@ class Start:
                 known = self.found.certificates
                 known.append(certificate)
                 known += descent.below(certificate.motion, certificate.least, rng)
-            early = self.number <= ROUND  # a walk from the first certificate is no better than from any other
+            early = self.number <= ROUND  # so early the lowest certificate is no better a start of a walk than others
             if early or not self.before or is_lower(self.found.lowest, self.before[0].least.multiplier):
                 best = self.found.best
                 self.found.certificates += () if best is None else descent.around(best, rng)
@@ -117,7 +117,7 @@ class Start:
         return ORIGINS[self.number // ROUND % len(ORIGINS)]
 
     def _scattered(self, system: Equilibrium, pressure: Array, rng: np.random.Generator) -> Array:
-        """Pressures ``(np,)`` beside others, everywhere or, as often, near one block."""
+        """Scatter pressures ``(np,)`` everywhere or, with equal probability, near one block."""
         factor = rng.lognormal(0.0, rng.uniform(*SCATTER), len(pressure))
         if self.place is not None and rng.random() < LOCAL:
             distance = distances(system, self.place, self.place[[rng.integers(len(self.place))]])
@@ -125,29 +125,29 @@ class Start:
         return pressure * factor
 
     def _base(self, rng: np.random.Generator) -> Certificate:
-        """The lowest certificate or, as often, another one, rather a low than a high one."""
-        return self.before[0 if rng.random() < LOWEST else int(len(self.before) * rng.random() ** 2)]
+        """The lowest certificate or, with equal probability, a random one, more likely a low than a high one."""
+        return self.before[0 if rng.random() < LOWEST_SHARE else int(len(self.before) * rng.random() ** 2)]
 
     def _neighbourhood(self, system: Equilibrium, base: Certificate, rng: np.random.Generator) -> Glued | None:
-        """The wall glued but around one point that a certificate moves, more or less of it; None for none."""
+        """Glue the wall except around one random point that moves, within a random size; None if none is left."""
         if self.place is None:
             return None
         moving = ~still_points(system, base.motion, NO_JUMP)
-        freedoms = int(rng.uniform(*AROUND) * system.freedoms)
+        freedoms = int(rng.uniform(*NEIGHBOURHOOD_SIZE) * system.freedoms)
         return neighbourhood(system, self.place, moving, one_of(moving, rng), freedoms)
 
     def _near(
         self, glued: Glued, base: Certificate, descent: Descent, rng: np.random.Generator
     ) -> Iterator[Certificate]:
-        """Certificates of the wall that are lower than all before, from those of a neighbourhood of one of them."""
+        """Certificates of the wall below all before, from those in a neighbourhood of one of them."""
         programs = Programs(glued.system, descent.programs.stopped, asks_interior_point=False)
         try:
-            found = sorted(certificates_near(glued, base, programs, SEQUENCES, rng), key=least_multiplier)
+            found = sorted(certificates_near(glued, base, programs, NEIGHBOURHOOD_SEQUENCES, rng), key=least_multiplier)
         finally:
             self.found.add_programs(programs.solved, glued.cost)
         lowest = self.before[0].least.multiplier
         for each in found:
-            if not is_lower(each.least.multiplier, lowest):  # what drives it in the wall drives it here as well
+            if not is_lower(each.least.multiplier, lowest):  # its load in the full wall is no lower
                 return
             certificate = certified(descent, glued.motions @ each.motion)
             if certificate is not None:
@@ -155,11 +155,11 @@ class Start:
                 yield certificate
 
     def _pressure(self, descent: Descent) -> Array:
-        """Pressures ``(np,)`` to start from.
+        """Initial pressures ``(np,)``.
 
-        Those of the associated solution, of the dead load, and then by rounds: random ones; those of random forces
-        that balance random loads, or, where these are more than `PIVOTS` corners away, random multiples of the
-        associated ones; random multiples of a certificate's.
+        Those of the associated solution, or of the dead load if that is unbounded, for the first three starts; then by
+        rounds: random ones; those of random forces that balance random loads or, if these are more than `START_PIVOTS`
+        away, random multiples of the associated ones; random multiples of a certificate's.
         """
         system, bounded = descent.system, self.associated.status == "optimal"
         if self.number <= 2:
@@ -174,14 +174,14 @@ class Start:
         if self._origin == "random":
             return weights * (self.associated.pressure.mean() if bounded else 1.0)
         load = share * top if top > 0 else (1 + share) * top
-        state = descent.programs.corner(coulomb(system.strength), weights, load, PIVOTS)
+        state = descent.programs.corner(coulomb(system.strength), weights, load, START_PIVOTS)
         if state.status == "optimal":
             return state.pressure
         return self.associated.pressure * rng.lognormal(size=len(weights)) if bounded else weights
 
 
 def first_sequence(descent: Descent, pressure: Array, found: SearchLog) -> Iterator[Certificate]:
-    """Run the sequence from a first pressure ``(np,)``, certifying every program, and note how it ended."""
+    """Run the sequence from a first pressure ``(np,)``, try to certify every mechanism, and record how it ended."""
     in_a_row, multiplier, growing = 0, -np.inf, True
     for k in range(PROGRAM_BUDGET):
         program = descent.programs.frozen(pressure)

@@ -1,4 +1,4 @@
-"""The models: how a scene becomes an outcome, each one object, and all of them by name."""
+"""The models, which compute an outcome from a scene: one object each, and all of them by name."""
 
 from .model import Cost, Kind, Model, Progress, Recorder
 from .registry import (

@@ -1,4 +1,4 @@
-"""Models that follow walls through finite displacements, where these are asked for beside a model's name."""
+"""Models at finite displacements, if the user requests these in addition to a model's name."""
 
 from dataclasses import replace
 from functools import partial
@@ -11,7 +11,7 @@ from .registry import MODELS
 
 
 def going_far(model: Model, displacements: str, distance: float | None, flag: str = "") -> Model:
-    """A model as it is, or, where ``"finite"`` displacements are asked for, as it follows walls through them.
+    """The model as it is, or set to finite displacements if ``"finite"`` ones are requested.
 
     Parameters
     ----------
@@ -20,14 +20,14 @@ def going_far(model: Model, displacements: str, distance: float | None, flag: st
     displacements
         ``"small"`` or ``"finite"``.
     distance
-        How far live loads push walls at finite ones [m]; None leaves that to the model.
+        How far live loads push the wall at finite displacements [m]; None leaves this to the model.
     flag
-        What stands before the names of both where they were given: dashes, for options.
+        Prefix of the names of both settings in error messages: dashes for command-line options.
 
     Raises
     ------
     SceneError
-        For displacements that the model does not know, or a distance that it would not read.
+        For displacements that the model does not support, or a distance that it would not use.
     """
     key = f"{flag}displacements"
     if one_of(key, displacements, ("small", "finite")) == "small":
@@ -45,10 +45,10 @@ def going_far(model: Model, displacements: str, distance: float | None, flag: st
 
 
 def check_goes_far(model: Model, scene: Scene, displacements: str, distance: float | None, flag: str = "") -> None:
-    """Refuse finite displacements of a wall that cannot be followed through them, before anything is run."""
+    """Refuse a wall that cannot be analysed at finite displacements, if these are requested, before anything is run."""
     if displacements == "small":
         return
-    from runningbond.dynamics.rig import check_finite, is_finite  # which need a compiler
+    from runningbond.dynamics.rig import check_finite, is_finite  # these need a compiler
 
     try:
         is_finite(displacements, model.name, scene, distance)

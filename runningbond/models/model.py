@@ -1,4 +1,4 @@
-"""What a model is: how a scene becomes an outcome, and what tables, charts and `advise` need to know of it."""
+"""Definition of a model: how it computes an outcome from a scene, and what tables, charts and `advise` need of it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
@@ -10,83 +10,83 @@ from runningbond.results import Outcome
 from runningbond.scene import JointMaterial, Mortar, Scene, SceneError, check_scene, table_of
 
 if TYPE_CHECKING:
-    from runningbond.response import Response  # which needs a compiler
+    from runningbond.response import Response  # needs a compiler
 
 Kind: TypeAlias = Literal["estimate", "bound", "certificate", "history"]
-"""What the multiplier of a model is worth: `bound` is proved from above, `certificate` an interval of loads at which
-collapse is proved possible, `history` the collapse of a wall that is followed there."""
+"""Meaning of a model's multiplier: `bound` is a proven upper bound, `certificate` an interval of loads at which
+collapse is proved possible, `history` the collapse load of a wall whose loading path is followed up to collapse."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Law of what a model costs; `runningbond.compare.advice.costs` says how it is used."""
+    """Law of a model's run time; see `runningbond.compare.advice.costs` for its use."""
 
     at_100: float  # seconds for 100 blocks
-    growth: float  # power of the number of blocks
-    spread: float  # factor within which two thirds of the walls lie about the law
-    weightless: float = 1.0  # how many times as much walls without weight cost
-    finer: float = 0.0  # power of the tolerance; 0 for a model that does not bisect
-    start: float = 0.0  # seconds that a wall of any size takes, until compiled kernels are loaded for one
-    cracked: float = 1.0  # how many times as much walls whose blocks may crack cost,
-    softened: float = 1.0  # those whose joints soften,
-    crushed: float = 1.0  # those whose joints crush or close under pressure,
-    soft: float = 1.0  # and those of soft blocks, beside which others are asked
+    growth: float  # exponent of the number of blocks
+    spread: float  # factor about the law within which two thirds of the walls lie
+    weightless: float = 1.0  # factor for walls without weight
+    finer: float = 0.0  # exponent of the tolerance; 0 for a model without bisection
+    start: float = 0.0  # seconds for a wall of any size, for example to load compiled kernels
+    cracked: float = 1.0  # factor for walls whose blocks may crack,
+    softened: float = 1.0  # for walls whose joints soften,
+    crushed: float = 1.0  # for walls whose joints crush or close under pressure,
+    soft: float = 1.0  # and for walls of soft blocks, for which further models run (`second_opinion`)
 
 
 class Recorder(Protocol):
-    """Observes a run of its model, and in the end has written what it saw, or has it in `frames` without a folder."""
+    """Observer that records a run of its model, in a folder or, if it has none, in `frames`."""
 
     @property
     def discretisation(self) -> Discretisation:
-        """The wall as it is observed."""
+        """Discretisation of the wall in the record."""
 
     @property
     def frames(self) -> Sequence[Frame]:
-        """What was seen, where there is no folder."""
+        """The recorded frames, if there is no folder."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> None:
-        """Look at a state, as the model shows it."""
+        """Record a state, in the arguments that the model passes."""
 
     def finish(self, outcome: Outcome) -> None:
-        """End, once the outcome is there."""
+        """Complete the record when the outcome is available."""
 
 
 class Progress(Protocol):
-    """Observes a run of its model, as a `Recorder` does, and says how far it has come."""
+    """Observer that reports the progress of a run of its model."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> None:
-        """Look at a state, as the model shows it."""
+        """Note a state, in the arguments that the model passes."""
 
     def line(self) -> str:
-        """How far it has come, in a line; asked for at any time, from another thread."""
+        """Progress of the run, in one line; may be called at any time, from another thread."""
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A model: how a scene becomes an outcome, and what others need to know of that.
+    """A model: how an outcome is computed from a scene, and the data on this that other packages need.
 
-    `solve` goes from a scene and the relative width of the bracket asked for to an outcome. It is handed `parameters`
-    by name, and ``observe=…`` if the model has an `observer`. `reads` has the keys of a scene file that have an
-    influence on the outcome, as ``joint.friction``, besides the wall, its supports and its loads, which every model
-    reads or refuses by name.
+    `solve` computes an outcome from a scene and the requested relative width of the bracket. It also receives the
+    `parameters` by name, and ``observe=…`` if the model has an `observer` or `progress`. `reads` lists the keys of
+    a scene file that influence the outcome, such as ``joint.friction``, in addition to the wall, its supports and its
+    loads, which every model reads or refuses by name.
     """
 
-    name: str  # what the command line, tables and charts call it
-    title: str  # what it does, in half a line
+    name: str  # name on the command line, in tables and charts
+    title: str  # short description
     solve: Callable[..., Outcome]
     reads: frozenset[str]
-    kind: Kind = "estimate"  # what its multiplier is worth
-    parameters: tuple[str, ...] = ()  # names of its own settings
+    kind: Kind = "estimate"  # meaning of the multiplier
+    parameters: tuple[str, ...] = ()  # names of the model's settings
     observer: Callable[[Scene, Path | None], Recorder] | None = None  # records a run in a folder, or in memory
-    progress: Callable[[], Progress] | None = None  # says how far a run has come
-    interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
-    cost: Cost | None = None  # `advise` runs no model without
-    is_finite: bool = False  # leads beams through finite displacements, whatever its settings
-    takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name
-    respond: Callable[..., "Response"] | None = None  # response to a motion of the ground, of scene, scale
-    colour: str = "0.35"  # how charts draw it,
+    progress: Callable[[], Progress] | None = None  # reports the progress of a run
+    interruptible: bool = False  # whether a KeyboardInterrupt makes it return what it has found so far
+    cost: Cost | None = None  # `advise` runs no model without this
+    is_finite: bool = False  # moves beams through finite displacements, whatever the settings
+    takes: frozenset[str] = frozenset()  # features of `Scene.extras` that it supports; it refuses all others by name
+    respond: Callable[..., "Response"] | None = None  # response to ground motion, from scene and scale
+    colour: str = "0.35"  # style in charts,
     marker: str = "*"
-    line: str | tuple[int, tuple[int, ...]] = "-"  # and its curve
+    line: str | tuple[int, tuple[int, ...]] = "-"  # and of curves
 
     def __post_init__(self) -> None:
         for field in ("reads", "parameters", "takes"):
@@ -94,16 +94,16 @@ class Model:
                 raise TypeError(f"{field} of a model must be several words, not {value!r}")
 
     def check(self, scene: Scene) -> None:
-        """Refuse, by name, a scene with what this model does not know of."""
+        """Refuse a scene with features that this model does not support; the error names the feature."""
         check_scene(scene)
         for key in scene.extras:
             if key not in self.takes:
-                raise SceneError(key, f"is not taken by model {self.name}; take another model, or leave it out")
+                raise SceneError(key, f"is not supported by model {self.name}; take another model, or leave it out")
 
     def unread(self, scene: Scene, *, finite: bool = False) -> list[str]:
-        """Keys of its file that a scene gives and this model does not take into account.
+        """Keys of the scene file that are given and that this model does not take into account.
 
-        Displacements are small, unless a beam is led through `finite` ones, as settings or the model itself have it.
+        Displacements are small, unless a beam is moved through `finite` ones, by the settings or by the model itself.
         """
         finite = (finite or self.is_finite) and bool(scene.drive_path)
         unread = []
@@ -120,7 +120,7 @@ class Model:
 
 
 def _given_keys(material: Any) -> list[str]:
-    """Keys of a material's table that say something else than their defaults."""
+    """Keys of a material's table whose values differ from the defaults."""
     own = [entry for entry in fields(material) if entry.name != "name"]
     keys = [entry.name for entry in own if getattr(material, entry.name) != entry.default]
     if isinstance(material, JointMaterial) and "elasticity" in keys:

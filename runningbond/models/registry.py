@@ -1,6 +1,6 @@
-"""The models: each one object, and all of them in `MODELS`, by the names the command line knows them by.
+"""The models, one object each, and all of them in `MODELS` by their names on the command line.
 
-A model of one's own is one more `Model`: put into `MODELS`, or handed to `run_model` as it is.
+A user's own model is another `Model`: add it to `MODELS`, or pass it to `run_model`.
 """
 
 import math
@@ -23,11 +23,11 @@ from runningbond.scene.mass_loads import Tilt
 from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
-from .second_opinion import FINER, asks_others, beside_others
+from .second_opinion import REFINEMENT, asks_others, beside_others
 from .settings import check_observer, check_response_settings, check_settings
 
 if TYPE_CHECKING:
-    from runningbond.response import Response  # which needs a compiler
+    from runningbond.response import Response  # needs a compiler
 
 DRY = frozenset({"block.density", "block.thickness", "joint.friction"})
 STRENGTH = DRY | {"joint.law", "joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
@@ -39,14 +39,14 @@ MOTION = INTERFACE | {"beam.drive.rate"}
 ELASTIC = MOTION | {"block.young", "block.poisson"}
 
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
-EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.extras` what a static model may know,
-FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a path
-KERNELS = 0.3  # seconds until the kernels of models that follow a wall are loaded
-TOLERANCE = 0.01  # relative width of the bracket where none is asked for
-FAR = 0.02  # motion of a wall, in its smaller side: a block that topples has lost as much of its resistance
-IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
+EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # features (`Scene.extras`) of static models,
+FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and of models that follow a loading path
+KERNELS = 0.3  # seconds to load the compiled kernels of models that follow a loading path
+TOLERANCE = 0.01  # default relative width of the bracket
+FAR_MOTION = 0.02  # limit of small motions, in the wall's smaller side: toppling loses this share of its resistance
+IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model with load steps
 OF_RESPONSES = ("points", "after", "rows", "observe")  # settings of every response
-OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # of deformable blocks
+OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # for deformable blocks
 
 
 def _homog(scene: Scene, tolerance: float) -> Outcome:
@@ -55,8 +55,8 @@ def _homog(scene: Scene, tolerance: float) -> Outcome:
 
 
 def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
-    """Call a function or class of a module that is of a method's package, or needs a compiler or VTK: imported now."""
-    prefer_to_folders()  # there may be more of them than when the suite was imported
+    """Import a module of a method's package, or one that needs a compiler or VTK, and call its function or class."""
+    prefer_to_folders()  # the working directory may have gained folders of these names since the import of the suite
     hidden = hidden_package(module)
     if hidden is not None:
         raise SceneError("import", hidden)
@@ -81,7 +81,7 @@ def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     return beside_others(
         outcome,
         lambda: _DEM_DYNAMIC(scene, tolerance, **steps, **observed("with rigid blocks")),
-        lambda: deformable(**chosen | {"cells": FINER}, **observed(f"on a mesh {FINER} times as fine")),
+        lambda: deformable(**chosen | {"cells": REFINEMENT}, **observed(f"on a mesh {REFINEMENT} times as fine")),
     )
 
 
@@ -166,7 +166,7 @@ MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in _EVERY_MODE
 
 
 def find_model(model: str | Model, key: str = "model") -> Model:
-    """The model of a name, or else a `SceneError` under the key, an option perhaps; a model is given back as it is."""
+    """The model with a name, or a `SceneError` under `key` (a key or option); a `Model` is returned as it is."""
     if isinstance(model, Model):
         return model
     if not isinstance(model, str) or model not in MODELS:
@@ -175,13 +175,13 @@ def find_model(model: str | Model, key: str = "model") -> Model:
 
 
 def check_tolerance(tolerance: float, key: str = "tolerance") -> None:
-    """Refuse a tolerance that is no relative width, by its key or option."""
+    """Refuse a tolerance that is no relative width, under its key or option."""
     if not (isinstance(tolerance, Real) and math.isfinite(tolerance) and 0 < tolerance < 1):
         raise SceneError(key, "must be a number above 0 and below 1", tolerance)
 
 
 def check_parameters(model: Model, parameters: Mapping[str, Any]) -> None:
-    """Refuse settings by names that a model does not have."""
+    """Refuse settings that a model does not have."""
     for name, value in parameters.items():
         if name not in model.parameters:
             own = ", ".join(model.parameters) or "none"
@@ -202,18 +202,18 @@ def run_model(
     model
         A key of `MODELS`, or a model.
     tolerance
-        Relative width of the bracket asked for.
+        Requested relative width of the bracket.
     observe
-        Looks at the states that the model passes through, if it has an observer or tells its progress.
+        Called with the states that the model passes through, if the model has an observer or reports progress.
     parameters
-        Settings of that model, by their names.
+        Settings of the model, by their names.
 
     Returns
     -------
     Outcome
-        Its message ends with the keys of the scene that the model does not take into account. ``failed``, with the
-        error's own words, where the model broke; an unknown model or parameter, or a model that does not apply to the
-        scene, is a `SceneError`.
+        The message ends with the keys of the scene that the model does not take into account. The status is ``failed``,
+        with the error message, if the model raised an error; an unknown model or parameter, or a model that does not
+        apply to the scene, raises a `SceneError`.
     """
     model = find_model(model)
     check_tolerance(tolerance)
@@ -229,7 +229,7 @@ def run_model(
         outcome = model.solve(scene, tolerance, **parameters)
     except SceneError:
         raise
-    except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
+    except Exception as error:  # a bug in the suite must not abort a campaign, nor end in a traceback
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     if not isinstance(outcome, Outcome):
         raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
@@ -248,10 +248,10 @@ def run_model(
 
 
 def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
-    """What is to be said where a wall has moved farther, at its largest load at rest, than small displacements go.
+    """Note for a wall that has moved beyond small displacements at the largest load at which it is at rest.
 
-    Its joints may give more than what counts as `collapse` [heights of a block]; or they have opened, and it hangs on
-    ties that are soft.
+    Its joints may deform elastically by more than `collapse` [heights of a block], or they have opened, and the wall
+    hangs on soft ties.
     """
     if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.upper:
         return ""
@@ -267,22 +267,22 @@ def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
     soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"
     far = f"at the largest load at rest the wall has moved by {side} its smaller side, beyond small displacements"
-    return joined(soft if gives > (FALLEN if collapse is None else collapse) else "", far if moved > FAR else "")
+    return joined(soft if gives > (FALLEN if collapse is None else collapse) else "", far if moved > FAR_MOTION else "")
 
 
 def _led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
-    """What is to be said of a wall that is led farther than small displacements go."""
+    """Note for a wall with prescribed displacements of its support or beam that are not small."""
     if model.kind != "history" or model.is_finite or not scene.is_led or not len(outcome.curve):
         return ""
     low, high = scene.blocks.extent(scene.wall)
     share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())
     led = f"{'the support' if scene.settlement else 'the beam'} goes by {two_digits(100 * share)} %"
     follows = "; finite ones follow it" if "displacements" in model.parameters and _may_go_far(scene) else ""
-    return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR else ""
+    return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR_MOTION else ""
 
 
 def _may_go_far(scene: Scene) -> bool:
-    """Whether a wall that is led can be followed through finite displacements."""
+    """Whether a wall with prescribed displacements can be analysed at finite displacements."""
     from runningbond.dynamics.rig import check_finite
 
     try:
@@ -293,7 +293,7 @@ def _may_go_far(scene: Scene) -> bool:
 
 
 def _tilted_with_the_ground(scene: Scene) -> str:
-    """What is to be said of dead loads that are no weights, where the ground turns."""
+    """Note for dead loads other than weights, if the ground tilts."""
     tilts = any(isinstance(load, Tilt) for load in scene.load.live)
     if not tilts or not len(scene.dead_forces.force):
         return ""
@@ -301,7 +301,7 @@ def _tilted_with_the_ground(scene: Scene) -> str:
 
 
 def _keeps_strength(model: Model, scene: Scene) -> str:
-    """What is to be said of joints that lose strength, where a model knows nothing of that; empty elsewhere."""
+    """Note for joints that lose strength, if the model does not include this; else empty."""
     joints = scene.materials_of_joints
     loses = {
         "joint.fracture_energy_1": any(each.softens for each in joints),
@@ -312,7 +312,7 @@ def _keeps_strength(model: Model, scene: Scene) -> str:
 
 
 def _left_out(model: Model, scene: Scene, finite: bool = False) -> str:
-    """The keys of a scene that a model does not take into account; empty if it reads all."""
+    """Note on the keys of a scene that a model does not take into account; empty if it reads all."""
     unread = model.unread(scene, finite=finite)
     return f"not taken into account: {', '.join(unread)}" if unread else ""
 
@@ -320,12 +320,13 @@ def _left_out(model: Model, scene: Scene, finite: bool = False) -> str:
 def check_response(
     model: str | Model, scene: Scene, scale: float, model_key: str = "model", scale_key: str = "scale"
 ) -> "Callable[..., Response]":
-    """How a model follows a scene through the motion of its ground.
+    """Check that a model can compute the response of a scene to its ground motion; return its `Model.respond`.
 
     Raises
     ------
     SceneError
-        For a model that follows no motion of the ground, a scene that has none, or a scale that is no number.
+        For a model without response to ground motion, a scene without ground motion, or a scale that is zero or no
+        number.
     """
     model = find_model(model, model_key)
     if model.respond is None:
@@ -340,14 +341,14 @@ def check_response(
 
 
 def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings: Any) -> "Response":
-    """Follow a scene through the motion of its ground, `scale` times as large; settings as of `follow`.
+    """Compute the response of a scene to its ground motion times `scale`; settings as for `follow`.
 
     The response's message ends with the keys of the scene that the model does not take into account.
 
     Raises
     ------
     SceneError
-        As of `check_response`.
+        As in `check_response`.
     """
     follow = check_response(model, scene, scale)
     own = OF_RESPONSES if find_model(model) is not MODELS["fem"] else (*OF_RESPONSES, "cells", "modes")

@@ -1,9 +1,9 @@
-"""Whether the way in which soft blocks deform decides where a wall falls: rigid blocks and a finer mesh are asked.
+"""Check whether the collapse load of a wall depends on how soft blocks deform, with rigid blocks and a finer mesh.
 
-Without dilatancy a wall has more than one collapse load, and blocks as soft as stone may lead it to another one, for
-how they deform or for how coarsely that is meshed. On a wall of 55 blocks of 10 GPa one cell in half a block ends 3 %
-above three cells and above rigid blocks. Rigid blocks cost a fraction of deformable ones; only where they fall at
-another load a finer mesh says which of both is at fault.
+Without dilatancy a wall has more than one collapse load, and blocks as soft as stone may lead it to another one,
+because of their deformation or because of a coarse mesh. For a wall of 55 blocks of 10 GPa, one cell per half block
+ends 3 % above three cells and above rigid blocks. Rigid blocks cost a fraction of deformable ones; only if they
+collapse at another load is a finer mesh run, to show which of the two is at fault.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,13 +17,13 @@ from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene
 
-SOFT = 0.05
-"""Share of the blocks in the compliance of a wall from which they are soft."""
+SOFT_SHARE = 0.05
+"""Share of the blocks in the compliance of a wall above which the blocks are soft."""
 
-FINER = 3
-"""Cells of the finer mesh in each of the usual one."""
+REFINEMENT = 3
+"""Refinement of the finer mesh: its value of ``cells``, which is 1 by default."""
 
-USUAL: dict[str, Any] = {
+DEFAULTS: dict[str, Any] = {
     "cells": 1,
     "modes": None,
     "rule": None,
@@ -31,40 +31,40 @@ USUAL: dict[str, Any] = {
     "cracks": "joints",
     "displacements": "small",
 }
-"""Settings of `fem` by which nobody has chosen how blocks deform, where they touch, and how far they go."""
+"""Default settings of `fem` for the deformation of blocks, their joint points, and the size of displacements."""
 
 Solver: TypeAlias = Callable[[], Outcome]
 
 
 def asks_others(scene: Scene, settings: Mapping[str, Any]) -> bool:
-    """Whether others are asked where a wall falls: where blocks of some material are soft, and meshed as usual.
+    """Whether other models are run: if the blocks of some material are soft, and all `DEFAULTS` settings are kept.
 
-    Where supports or a beam are led, or the ground moves, there is no bracket of loads to compare.
+    With prescribed displacements of supports or a beam, or with ground motion, there is no bracket to compare.
     """
     materials = [scene.block_materials[k] for k in np.unique(scene.material_of_block[scene.wall & ~scene.is_beam])]
     moduli = [each.young for each in materials if each.young is not None]
-    if not moduli or scene.is_led or scene.history or any(settings.get(key, of) != of for key, of in USUAL.items()):
+    if not moduli or scene.is_led or scene.history or any(settings.get(key, of) != of for key, of in DEFAULTS.items()):
         return False
     softest = tuple(replace(each, young=min(moduli)) for each in scene.block_materials)
-    return block_compliance(replace(scene, block_materials=softest)) > SOFT
+    return block_compliance(replace(scene, block_materials=softest)) > SOFT_SHARE
 
 
 def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) -> Outcome:
-    """A collapse of soft blocks, with what rigid blocks and those of a finer mesh make of it where they differ.
+    """Compare a collapse of soft blocks with rigid blocks and, if these differ, with a finer mesh.
 
     Parameters
     ----------
     outcome
-        That of deformable blocks.
+        Outcome of deformable blocks.
     rigid_blocks, finer_mesh
-        Find the collapse of the same wall by those, without arguments.
+        Functions without arguments that compute the collapse of the same wall with these.
 
     Returns
     -------
     Outcome
-        As it was where rigid blocks fall at a load that its bracket has as well; else the bracket takes in that of
-        the finer mesh, its multiplier is the smaller of both, and the message has all three; arrays stay as they were.
-        Steps and seconds are those of all that were asked.
+        Unchanged if its bracket and that of rigid blocks have a load in common. Otherwise the bracket is extended to
+        include that of the finer mesh, the multiplier is the smaller of the two, and the message states all three
+        brackets; arrays are unchanged. Steps and seconds are the sums over all runs.
     """
     if outcome.status != "collapse":
         return outcome
@@ -82,7 +82,7 @@ def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) ->
     (lower, *_), (*_, upper) = (sorted(ends) for ends in zip(*map(_bracket, found), strict=True))
     multiplier = min(each.multiplier for each in found if each.multiplier is not None)
     message = f"{outcome.message}; how blocks deform decides where this wall falls: as they are {_loads(outcome)}"
-    message += f", on a mesh {FINER} times as fine {told}, without deforming {_loads(rigid)}"
+    message += f", on a mesh {REFINEMENT} times as fine {told}, without deforming {_loads(rigid)}"
     message += "; mechanism, curve and forces are those of blocks as they are"
     return replace(asked, multiplier=multiplier, lower=lower, upper=upper, message=message)
 
@@ -94,13 +94,13 @@ def share_loads(one: Outcome, other: Outcome) -> bool:
 
 
 def _with_effort(outcome: Outcome, other: Outcome) -> Outcome:
-    """An outcome with the steps and seconds of another one besides its own."""
+    """An outcome with the steps and seconds of another one added."""
     steps = (outcome.steps or 0) + (other.steps or 0)
     return replace(outcome, steps=steps, seconds=outcome.seconds + other.seconds)
 
 
 def _bracket(outcome: Outcome) -> tuple[float, float]:
-    """Bracket of a collapse, which has both ends."""
+    """Bracket of a collapse, which always has both ends."""
     assert outcome.lower is not None
     assert outcome.upper is not None
     return outcome.lower, outcome.upper

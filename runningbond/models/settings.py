@@ -1,4 +1,4 @@
-"""What settings of the package's own models may be, checked before a model runs."""
+"""Checks of the settings of the package's own models, before a model runs."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -11,7 +11,7 @@ from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO, check_whole_number
 
 Check: TypeAlias = Callable[[str, object], object]
-"""Refuses a value under a key."""
+"""Function that refuses an invalid value under a key."""
 
 
 def _true_or_false(key: str, value: object) -> None:
@@ -31,7 +31,7 @@ def _rule(key: str, value: object) -> None:
 
 
 def check_observer(key: str, value: object) -> None:
-    """Refuse what cannot be called."""
+    """Refuse an observer that cannot be called."""
     if not callable(value):
         raise SceneError(key, "must be a function, which is shown the states that the model passes through", value)
 
@@ -51,27 +51,27 @@ CHECKS: Mapping[str, Check] = {
 """Checks of settings, by their names; others are checked where they are used."""
 
 OPTIONAL = ("programs", "modes", "rule")
-"""Settings that may be None as well."""
+"""Settings that may also be None."""
 
 NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements", "distance")
-"""Settings that mean nothing where the ground moves."""
+"""Settings that are meaningless if the ground moves."""
 
 OF_MOTIONS: Mapping[str, Check] = {"rows": check_whole_number, "after": AT_LEAST_ZERO.take, "observe": check_observer}
 """Checks of settings of a response."""
 
 
 def check_settings(model: str, scene: Scene, settings: Mapping[str, Any]) -> None:
-    """Refuse settings of a model of the package that are out of range, or that a scene gives no meaning."""
+    """Refuse settings of one of the package's models that are out of range, or meaningless for a scene."""
     for name, value in settings.items():
         key = f"model {model}: {name}"
         if scene.history and name in NOT_IN_MOTION:
-            raise SceneError(key, "is not taken where the ground moves; leave it out", value)
+            raise SceneError(key, "is not supported where the ground moves; leave it out", value)
         if name in CHECKS and not (value is None and name in OPTIONAL):
             CHECKS[name](key, value)
 
 
 def check_response_settings(settings: Mapping[str, Any], known: tuple[str, ...]) -> None:
-    """Refuse settings of a response that it has not, or that are out of range."""
+    """Refuse settings of a response that are unknown or out of range."""
     for name, value in settings.items():
         if name not in known:
             raise SceneError(name, f"is not a setting of a response; it has {', '.join(known)}", value)

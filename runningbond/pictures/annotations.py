@@ -1,4 +1,4 @@
-"""What engineers draw around a wall: supports, ties, loads with their sizes; and room for all of it on paper."""
+"""Annotations around a wall (supports, ties, loads with their sizes) and the space they need on paper."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,25 +17,25 @@ from .ties import draw_ties
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SHARES, CROWDED = (1.0, 0.85, 0.7), 1.7
-"""Sizes of type and arrows to be tried, and how much smaller than alone a wall may be drawn for them."""
+SIZE_FACTORS, MAX_REDUCTION = (1.0, 0.85, 0.7), 1.7
+"""Size factors tried in turn for type and arrows, until annotations reduce the wall's drawn size by less than this."""
 
-HOPELESS = 20.0
-"""How much smaller than alone a wall is not drawn, even if what is around it is cut off."""
+REDUCTION_LIMIT = 20.0
+"""Factor beyond which the wall's drawn size is not reduced further, even if annotations are cut off."""
 
 
 @dataclass(frozen=True)
 class Room:
-    """Room for what is around a wall in a drawing.
+    """Space for the annotations around a wall in a drawing.
 
     Parameters
     ----------
     extent
-        What the drawing shows.
+        Part of the plane that the drawing shows.
     point
-        Metres that a point of the type takes in it, or somewhat more.
+        Metres in the drawing per typographic point of the type at its reduced size, or somewhat more.
     share
-        How large type and arrows are, as a share of their usual size.
+        Size of type and arrows relative to their usual size.
     """
 
     extent: Extent
@@ -48,9 +48,9 @@ THRUST = "#7b3294"
 
 
 def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False, thrust: Array | None = None) -> Sketch:
-    """Everything around a wall, where a point of the type takes so many metres.
+    """Collect all annotations around a wall, for a given number of metres per typographic point.
 
-    With it the numbers of blocks, and lines of thrust ``(n, 2, 2)`` [m], of which those at the base go beyond the wall.
+    They can include block numbers and lines of thrust ``(n, 2, 2)`` [m]; the latter extend beyond the wall at its base.
     """
     sketch = Sketch(point, block_numbers(shape.scene, point) if numbers else [])
     sketch.keep_clear(shape.hinges)
@@ -73,14 +73,14 @@ def room_for(
     numbers: bool = False,
     thrust: Array | None = None,
 ) -> Room:
-    """Room for supports and loads around a wall in some shapes, in a drawing at most so wide and high [in].
+    """Find space for supports and loads around several shapes of a wall, in a drawing of at most a given size [in].
 
-    What is around the wall is made smaller where it would leave too little of the drawing to the wall.
+    Annotations are made smaller if they would leave too little of the drawing to the wall.
     """
     least = metres_of_point(extent, size)
-    rooms = (_room(shapes, extent, size, share, numbers, thrust) for share in SHARES)
+    rooms = (_room(shapes, extent, size, share, numbers, thrust) for share in SIZE_FACTORS)
     for room in rooms:
-        if room.point < CROWDED * room.share * least:
+        if room.point < MAX_REDUCTION * room.share * least:
             return room
     return room
 
@@ -93,7 +93,7 @@ def _room(
     numbers: bool,
     thrust: Array | None,
 ) -> Room:
-    """Room for what is around the wall, which takes the more metres the more is shown."""
+    """Space for annotations of a given relative size, by iteration: a larger extent makes them larger in metres."""
     base = float(shapes[0].scene.blocks.extent(shapes[0].scene.wall)[0][1])
     point = least = metres_of_point(extent, size)
     while True:
@@ -102,13 +102,13 @@ def _room(
         floor = (*extent[:2], min(extent[2], base - 1.2 * UNIT * share * point), extent[3])
         shown = around([floor, *(one for one in extents if one)])
         needed = metres_of_point(shown, size)
-        if needed <= point * (1 + 1e-12) or point > HOPELESS * least:
+        if needed <= point * (1 + 1e-12) or point > REDUCTION_LIMIT * least:
             return Room(shown, share * point, share)
         point += max(1.3 * (needed - point), 0.002 * point)
 
 
 def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
-    """Metres that a point takes where an extent is shown as large as can be in so many inches."""
+    """Metres per typographic point if an extent is shown as large as possible in a drawing of a given size [in]."""
     left, right, bottom, top = extent
     return max((right - left) / size[0], (top - bottom) / size[1]) / 72
 
@@ -116,12 +116,12 @@ def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
 def annotate(
     axes: "Axes", shape: DeformedShape, room: Room, *, numbers: bool = False, thrust: Array | None = None
 ) -> None:
-    """Draw the supports of a wall, its ties, its loads and its lines of thrust into axes that have room for them."""
+    """Draw the supports, ties, loads and lines of thrust of a wall into axes that have room for them."""
     sketch_around(shape, room.point, numbers=numbers, thrust=thrust).draw(axes, room.share)
 
 
 def axes_size(axes: "Axes") -> tuple[float, float]:
-    """Width and height of axes before they are given an aspect [in]."""
+    """Width and height of axes before an aspect ratio is applied [in]."""
     figure = axes.figure
     box = axes.get_position(original=True)
     width, height = figure.get_size_inches() if hasattr(figure, "get_size_inches") else figure.figure.get_size_inches()

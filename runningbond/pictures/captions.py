@@ -1,4 +1,4 @@
-"""The words around a drawing, and the figure that holds them: title, load and bracket, key to colours, and scale."""
+"""The text around a drawing (title, load and bracket, colour key, scale) and the figure that holds both."""
 
 import io
 import math
@@ -22,27 +22,27 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, TALLEST, DPI = 3.5, 4.2, 300
-"""Width of a picture, that of a journal's column, largest height of the wall in it [in], and dots per inch."""
+"""Width of a picture (a journal column) and largest height of the wall in it [in], and dots per inch."""
 
 LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.14, 0.105, 0.08
-"""Heights of a line of the title, of an entry of the key, of a line more, and of the air above and below [in]."""
+"""Heights of a title line, a key entry, a note or further line of an entry, and the margins above and below [in]."""
 
-TITLE = 48
-"""Letters in a line of the title, which the narrowest of pictures has room for."""
+TITLE_LENGTH = 48
+"""Characters per line of the title, which fit into the narrowest picture."""
 
 
 @dataclass(frozen=True)
 class Caption:
-    """The words around a drawing.
+    """The text around a drawing.
 
     Parameters
     ----------
     heading, subtitle
-        Lines in bold above the drawing, and a line below them; empty for none.
+        Bold lines above the drawing, and one line below them; empty for none.
     notes
         Lines below the drawing and its key.
     key, columns
-        What colours and lines stand for, handles of a legend, and in how many columns.
+        Legend handles that explain colours and lines, and the number of columns of the legend.
     """
 
     heading: Sequence[str]
@@ -65,7 +65,7 @@ class Caption:
         return float(KEY_LINE * n + NOTE_LINE * more + 0.04)
 
     def write(self, axes: "Axes") -> None:
-        """Write the words above and below some axes."""
+        """Write the text above and below axes."""
         level = 0.04
         for text, weight in ((self.subtitle, "normal"), *((line, "bold") for line in reversed(self.heading))):
             if text:
@@ -79,7 +79,7 @@ class Caption:
 
 
 def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -> None:
-    """Text in the middle of the width of axes, so far above their bottom (0) or top (1)."""
+    """Write text centred on the width of axes, at a distance above their bottom (level 0) or top (level 1)."""
     place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False}
     axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", parse_math=False, **place, **style)
 
@@ -87,7 +87,7 @@ def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -
 def figure_with_room(
     extent: Extent, caption: Caption, enlarged: float = 1.0, make: "Callable[..., Figure] | None" = None
 ) -> "tuple[Figure, Axes]":
-    """A figure of one drawing, so many times as large as a journal's, with room for its caption; `make` makes it."""
+    """Make a figure of one drawing, enlarged from journal size, with room for its caption; `make` replaces `Figure`."""
     from matplotlib.figure import Figure
 
     left, right, bottom, top = extent
@@ -99,30 +99,30 @@ def figure_with_room(
 
 
 def show_extent(axes: "Axes", extent: Extent) -> None:
-    """Show a part of the plane in some axes, at one scale both ways and without ticks."""
+    """Show a part of the plane in axes, with equal scales and without ticks."""
     left, right, bottom, top = extent
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     axes.axis("off")
 
 
 def load_symbol(scene: Scene) -> str:
-    """What the multiplier is called: P where it is a force in newtons."""
+    """Symbol of the multiplier: P if it is a force in newtons, else λ."""
     return "P" if is_force(scene) else "λ"
 
 
 def is_force(scene: Scene) -> bool:
-    """Whether λ is a force in newtons: that of a point load of one newton."""
+    """Whether λ is a force in newtons, because the live load consists of point forces with a resultant of 1 N."""
     live = scene.live_forces
     return live.at_points_alone and math.isclose(math.hypot(*live.force.sum(axis=0)), 1.0)
 
 
 def load_text(scene: Scene, multiplier: float) -> str:
-    """A multiplier, in newtons where it is a force."""
+    """Format a multiplier, in newtons if it is a force."""
     return f"{load_symbol(scene)} = {number(multiplier)}{' N' if is_force(scene) else ''}"
 
 
 def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
-    """Load at collapse, or what there is instead, and its bracket; empty where that adds nothing."""
+    """Load at collapse, or else the status, and the bracket or bounds; these are empty if they add nothing."""
     name, unit = load_symbol(scene), " N" if is_force(scene) else ""
     low, high = (None if x is None else signed(number(x)) for x in (outcome.lower, outcome.upper))
     if outcome.status != "collapse" or outcome.multiplier is None:
@@ -133,7 +133,7 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
 
 
 def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, drawn: bool) -> Caption:
-    """Title with load and bracket, how large the mechanism is drawn, and what is wrong with it where something is."""
+    """Caption with title, load, bracket, drawn size of the mechanism, and a warning if something is wrong with it."""
     title, load = wall_title(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
     warning = mechanism_warning(scene, outcome)
     if not drawn:
@@ -148,8 +148,8 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
 
 
 def wall_title(title: str) -> list[str]:
-    """Lines of a wall's name, none longer than a figure is wide."""
-    return textwrap.wrap(title, TITLE) or [""]
+    """Split a wall's title into lines that fit the width of a figure."""
+    return textwrap.wrap(title, TITLE_LENGTH) or [""]
 
 
 def colour_key(
@@ -158,7 +158,7 @@ def colour_key(
     dashes: Mapping[JointState, Any] | None = None,
     crushes: bool = False,
 ) -> list[Any]:
-    """What the colours of a picture stand for, and the dashes of its lines: handles of a legend."""
+    """Legend handles that explain the colours of a picture and the dashes of its lines."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -174,7 +174,7 @@ def colour_key(
 
 
 def held_key(scene: Scene) -> list[Any]:
-    """What the colour of blocks of the wall that are held stands for, where there are some."""
+    """Legend handle for held blocks of the wall, if there are any."""
     from matplotlib.patches import Patch
 
     return [Patch(facecolor=HELD, edgecolor="0.5", lw=0.5, label="held block")] if scene.fixed[scene.wall].any() else []
@@ -184,13 +184,13 @@ def to_png(figure: "Figure", dpi: float = DPI) -> bytes:
     """A figure as the content of a PNG file."""
     buffer = io.BytesIO()
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph", UserWarning)  # a letter of a title that the font lacks is a box
+        warnings.filterwarnings("ignore", "Glyph", UserWarning)  # characters that the font lacks are drawn as boxes
         figure.savefig(buffer, format="png", dpi=dpi)
     return buffer.getvalue()
 
 
 def to_svg(figure: "Figure") -> bytes:
-    """A figure as the content of an SVG file, the same for the same figure."""
+    """A figure as the content of an SVG file, identical for identical figures."""
     import matplotlib
 
     buffer = io.BytesIO()

@@ -1,4 +1,4 @@
-"""How charts look: colours and markers, series of rows, levels and brackets."""
+"""Elements of charts: colours and markers, series of table rows, levels and brackets."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -14,18 +14,18 @@ from .style import CHART_COLOURS
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LOOKS = tuple(zip(CHART_COLOURS, "os^Dv", strict=True))  # colour and marker, one after another
-Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker by the entries of a column
-Row: TypeAlias = Mapping[str, Any]  # of a table, by columns
+LOOKS = tuple(zip(CHART_COLOURS, "os^Dv", strict=True))  # pairs of colour and marker
+Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker for each entry of a column
+Row: TypeAlias = Mapping[str, Any]  # values of a table row by column name
 
 
 def bare(axes: "Axes") -> None:
-    """Take away the frame where nothing is read off it."""
+    """Remove the top and right sides of the frame, at which no values are read."""
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def looks_of(names: Sequence[Any]) -> Looks:
-    """`LOOKS` by names."""
+    """Assign the entries of `LOOKS` to names, in order."""
     return dict(zip(names, LOOKS, strict=False))
 
 
@@ -38,7 +38,7 @@ def series(
     looks: Looks,
     **style: Any,
 ) -> None:
-    """Plot one column of rows over another, a series for each entry of a third; rows without a number are left out."""
+    """Plot column `y` of rows over column `x`, one series per entry of column `by`; skip rows without a number."""
     for name, (colour, marker) in looks.items():
         points = [(row[x], y(row) if callable(y) else row.get(y)) for row in rows if row[by] == name]
         points = [point for point in points if point[1] is not None]
@@ -47,20 +47,20 @@ def series(
 
 
 def level(axes: "Axes", y: float, text: str, x: float = 0.98, **style: Any) -> None:
-    """A dashed line at a level, its name above it at a share of the axes' width."""
+    """Draw a dashed line at a level, with its name above it at a fraction of the axes' width."""
     axes.axhline(y, color="0.5", lw=0.9, ls="--", zorder=0)
     where: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 8, "color": "0.4"} | style
     axes.annotate(text, (x, y), xycoords=("axes fraction", "data"), **where)
 
 
 def ticks(axes: "Axes", values: Sequence[float], form: str = "{:g}") -> None:
-    """Ticks of a logarithmic x axis at these values alone, written out."""
+    """Set the ticks of a logarithmic x axis at the given values only, written out as numbers."""
     axes.set_xticks(values, [form.format(value) for value in values])
     axes.minorticks_off()
 
 
 def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None:
-    """A bracket of λ as an upright bar, hollow where it is no collapse."""
+    """Draw a bracket of λ as a vertical bar, hollow unless the status is collapse."""
     bar: dict[str, Any] = {"color": colour, "lw": 4, "solid_capstyle": "butt"} | style
     hollow = row["status"] != "collapse"
     if hollow:
@@ -70,13 +70,13 @@ def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None
 
 
 def floor(axes: "Axes", least: float) -> None:
-    """A band at the end of an axis, where what is smaller is drawn, at a level that is said to be so much or less."""
+    """Draw a band at the lower end of an axis, labelled "or less", for values that do not exceed `least`."""
     axes.axhspan(least / 2, 1.6 * least, color="0.93", lw=0, zorder=0)
     axes.annotate("or less", (0.99, least), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=8)
 
 
 def mark(axes: "Axes", x: float, outcome: Outcome, colour: str, marker: str) -> None:
-    """A bar for the bracket and a mark on it; both hollow where no collapse load was found, and at 0 without any."""
+    """Draw a bar for the bracket with a marker on it; both hollow without a collapse load, and at 0 without bounds."""
     from matplotlib.patches import Rectangle
 
     loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
@@ -90,5 +90,5 @@ def mark(axes: "Axes", x: float, outcome: Outcome, colour: str, marker: str) -> 
 
 
 def in_units(unit: float) -> tuple[Callable[[ArrayLike], Array], Callable[[ArrayLike], Array]]:
-    """From values to ratios to a unit, and back, as a second axis needs them."""
+    """Return the functions from values to multiples of a unit and back, as needed by a secondary axis."""
     return lambda value: np.asarray(value, float) / unit, lambda ratio: np.asarray(ratio, float) * unit

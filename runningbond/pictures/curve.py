@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 (CURVE, _, _, FALL, _), BAND = CHART_COLOURS, "#f2c879"
 """Colours of states at rest, of a fall, and of the bracket."""
 
-LABEL = 0.08
-"""Share of the height above the level to which a share of the dead load falls that its label takes below."""
+LABEL_HEIGHT = 0.08
+"""Space kept for the label below the lowest level in charts of settlements, relative to the height above that level."""
 
-SEEN = 0.04
-"""Share of the axis below which the displacement at half the peak is not seen, and the axis is bent into a log one."""
+LINEAR_SHARE = 0.04
+"""Displacement at half the peak load, relative to the axis range, below which the axis is made logarithmic."""
 
 
 def curve_figure(scene: Scene, outcome: Outcome, *, make: "Callable[..., Figure] | None" = None) -> "Figure":
-    """A figure of a curve that is not empty; `make` makes it in place of `Figure`."""
+    """Make a figure of a non-empty curve; `make` replaces `Figure`."""
     from matplotlib.figure import Figure
 
     figure = (make or Figure)(figsize=(5.2, 3.7), layout="constrained", dpi=200)
@@ -37,7 +37,7 @@ def curve_figure(scene: Scene, outcome: Outcome, *, make: "Callable[..., Figure]
 
 
 def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
-    """Draw a curve that is not empty into axes, its bracket as a band and the collapse load as a line in it."""
+    """Draw a non-empty curve into axes, with the bracket as a band and the collapse load as a line in it."""
     from matplotlib.patheffects import withStroke
 
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
@@ -50,7 +50,7 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     axes.annotate(
         f"{answer}  {bracket}".strip(),
         (0.02, min(levels) if scene.settlement else max(levels)),
-        (0, -4 if scene.settlement else 4),  # a share falls to its level; states lie on it
+        (0, -4 if scene.settlement else 4),  # under a settlement, the curve descends to the level
         va="top" if scene.settlement else "baseline",
         xycoords=("axes fraction", "data"),
         textcoords="offset points",
@@ -60,12 +60,12 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
         path_effects=[withStroke(linewidth=2.0, foreground="white")],
     )
     _draw_states(axes, scene, outcome)
-    if scene.is_led or _rests(outcome).any():  # of what is pushed far, how it falls is to be seen
+    if scene.is_led or _rests(outcome).any():  # else it is pushed far: its fall must stay visible
         _bend(axes, moved, load)
     bottom = min(0.0, 1.12 * load.min())
     top = max(-0.05 * bottom, 1.12 * max(load.max(), *levels)) or 1.0
     if scene.settlement:
-        bottom = min(bottom, min(levels) - LABEL * (top - min(levels)))
+        bottom = min(bottom, min(levels) - LABEL_HEIGHT * (top - min(levels)))
     axes.set_ylim(bottom, top)
     displacement, load_axis = curve_quantities(scene)
     axes.set_xlabel(f"{displacement} [mm]", fontsize=TYPE + 1)
@@ -77,7 +77,7 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 
 
 def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
-    """States at rest and in a fall; those under motions of the ground, each of its own, have no line between them."""
+    """Draw states at rest and in a fall; under ground motions each state is a separate run, so no line joins them."""
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
     rests = _rests(outcome)
     is_led = not rests.any()  # in motion all the way
@@ -93,16 +93,16 @@ def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 
 
 def _rests(outcome: Outcome) -> Mask:
-    """Rows of a curve at which the wall is at rest."""
+    """Whether the wall is at rest at each row of a curve."""
     return np.asarray(outcome.curve_columns().get(AT_REST, np.ones(len(outcome.curve))) == 1)
 
 
 def _bend(axes: "Axes", moved: Array, load: Array) -> None:
-    """Make the axis of displacements a logarithmic one beyond a part, where the rise of the load were not seen."""
+    """Make the displacement axis logarithmic beyond a linear part if the rise of the load would be invisible."""
     from matplotlib.ticker import SymmetricalLogLocator
 
-    half = float(np.abs(moved[np.argmax(load >= load.max() / 2)]))  # where the load first is half its peak
-    if not 0 < half < SEEN * np.ptp(moved) or moved.min() <= -half:  # a wall that is pushed to and fro
+    half = float(np.abs(moved[np.argmax(load >= load.max() / 2)]))  # where the load first reaches half its peak
+    if not 0 < half < LINEAR_SHARE * np.ptp(moved) or moved.min() <= -half:  # no log axis for cyclic loading
         return
     linear = float(10.0 ** np.ceil(np.log10(half)))
     axes.set_xscale("symlog", linthresh=linear)
@@ -115,7 +115,7 @@ def _bend(axes: "Axes", moved: Array, load: Array) -> None:
 
 
 def curve_quantities(scene: Scene) -> tuple[str, str]:
-    """What a curve has: a displacement, without its unit, and a load, with its own if it has one."""
+    """Axis names of a curve: its displacement without a unit, and its load with its unit, if it has one."""
     symbol = load_symbol(scene)
     load = f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}"
     if scene.history:

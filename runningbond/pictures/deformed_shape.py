@@ -1,4 +1,4 @@
-"""The deformed shape of a wall, as polygons of its blocks and of its joints' gaps: what every picture is drawn from."""
+"""The deformed shape of a wall, as polygons of its blocks and joint gaps, from which all pictures are drawn."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,43 +12,43 @@ from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Indices, Mask, Scene
 
 from .joint_state import JointState, joint_states
-from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, SEEN, STATE_COLOURS, Colouring
+from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, STATE_COLOURS, VISIBLE_GAP, Colouring
 
 Extent: TypeAlias = tuple[float, float, float, float]
-"""A part of the plane: left, right, bottom and top [m]."""
+"""Part of the plane: left, right, bottom and top [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class DeformedShape:
-    """Where the blocks and joints of a wall are at one moment, and how that is to be drawn.
+    """Positions of the blocks and joints of a wall at one moment, and how to draw them.
 
     Parameters
     ----------
     scene
         The wall.
     points, displacement : (n, 2) float
-        Corners of one polygon after another, counter-clockwise, before they move [m], and their displacement [m].
+        Undeformed corners of all polygons, polygon by polygon, counter-clockwise [m], and their displacement [m].
     first : (nc + 1,) int
-        Where each polygon's corners start. A polygon is a block, or one of its triangles.
+        Index of each polygon's first corner. A polygon is a block, or one of its triangles.
     block : (nc,) int
         Block of each polygon; the ground is left out.
     edges : (ne, 2) int
         Corners at the ends of the blocks' edges.
     faces, face_displacement : (nf, 4, 2) float
-        Corners of each joint's gap before they move [m], along block a's side and back along b's, and their
+        Undeformed corners of each joint's gap [m], along block a's side and back along block b's, and their
         displacement [m].
     state : (nf,) int
         A `JointState` each.
     multiplier, scale
-        λ, and the factor of displacements in the drawing.
+        λ, and the factor by which displacements are enlarged in the drawing.
     colouring
         How blocks are coloured.
     crushed : (nf, 2) bool
-        Whether each joint is crushed at its ends; empty where none is.
+        Whether each joint is crushed at its ends; empty if none is.
     motion : (nb, 3) float
-        Motion of each block, of which that of supports is drawn; empty where these rest.
+        Motion of each block, used only to draw the supports; empty if these are at rest.
     time
-        Since the motion of the ground began [s]; None where there is none.
+        Time since the ground motion began [s]; None without a ground motion.
     """
 
     scene: Scene
@@ -69,10 +69,10 @@ class DeformedShape:
 
     @classmethod
     def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
-        """Blocks that move by ``(nb, 3)`` [m, m, rad], displacements made visible.
+        """Shape of rigid blocks with motions ``(nb, 3)`` [m, m, rad], with displacements scaled to be visible.
 
-        The largest is that of the wall or, where these move farther, of its supports. States are those of joints
-        ``(nj,)`` or of their ends ``(nj, 2)``.
+        The scale follows from the largest displacement of the wall or of its supports, whichever is larger. States are
+        those of joints ``(nj,)`` or of their ends ``(nj, 2)``.
         """
         blocks, joints = scene.blocks, scene.joints
         own = scene.wall[blocks.owner]
@@ -99,17 +99,17 @@ class DeformedShape:
 
     @property
     def placed(self) -> Array:
-        """Corners of the polygons where they are drawn, ``(n, 2)`` [m]."""
+        """Drawn positions of the polygons' corners, ``(n, 2)`` [m]."""
         return self.points + self.scale * self.displacement
 
     @property
     def placed_faces(self) -> Array:
-        """Corners of the joints' gaps where they are drawn, ``(nf, 4, 2)`` [m]."""
+        """Drawn positions of the corners of joint gaps, ``(nf, 4, 2)`` [m]."""
         return self.faces + self.scale * self.face_displacement
 
     @property
     def extent(self) -> Extent:
-        """What shows the whole wall before and after, with a little air around it."""
+        """Extent of the whole wall before and after deformation, with a small margin."""
         both = np.concatenate([self.scene.blocks.vertices[self.scene.wall[self.scene.blocks.owner]], self.placed])
         (left, bottom), (right, top) = both.min(axis=0), both.max(axis=0)
         air = 0.03 * max(right - left, top - bottom)
@@ -117,68 +117,68 @@ class DeformedShape:
 
     @property
     def gaps(self) -> Array:
-        """How far the two ends of each joint are drawn apart, ``(nf, 2)`` [m]."""
+        """Drawn distance between the two sides of each joint, at both of its ends, ``(nf, 2)`` [m]."""
         faces = self.placed_faces
         return np.asarray(np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1)))
 
     @property
     def parted(self) -> Mask:
-        """Whether the two sides of each joint, drawn where they are, are a block apart, ``(nf,)``: no gap, but space.
+        """Whether the sides of each joint are more than a block's side apart, ``(nf,)``, so that its gap is not filled.
 
-        What is drawn farther than it moves is one wall however far that is.
+        This holds only for displacements at true scale; enlarged ones show a connected wall however wide the gaps are.
         """
         return np.asarray((self.scale == 1.0) & (self.gaps.min(axis=1) > usual_side(self.scene)))
 
     @cached_property
     def drawn_state(self) -> Indices:
-        """The state that each joint is drawn in, ``(nf,)``: it sticks where it opens by less than can be seen."""
-        unseen = (self.state == JointState.OPEN) & (self.gaps.max(axis=1) < SEEN * self.scene.size)
+        """State in which each joint is drawn, ``(nf,)``: it sticks if its opening is too small to be seen."""
+        unseen = (self.state == JointState.OPEN) & (self.gaps.max(axis=1) < VISIBLE_GAP * self.scene.size)
         return np.where(unseen, JointState.STICK, self.state)
 
     @property
     def states(self) -> list[JointState]:
-        """States of its joints that are drawn."""
+        """Joint states with a colour that occur in the drawing."""
         return [state for state in STATE_COLOURS if state in self.drawn_state]
 
     @property
     def hinges(self) -> Array:
-        """Closed ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
-        closed = self.gaps.min(axis=1) < 0.5 * SEEN * self.scene.size
+        """Drawn positions of the closed ends about which open, uncrushed joints rotate, ``(n, 2)`` [m]."""
+        closed = self.gaps.min(axis=1) < 0.5 * VISIBLE_GAP * self.scene.size
         turns = closed & (self.drawn_state == JointState.OPEN)
         turns[: len(self.crushed)] &= ~self.crushed.any(axis=1)
         return np.asarray(self.placed_faces[turns, self.gaps[turns].argmin(axis=1)])
 
     @property
     def crosses(self) -> Array:
-        """Ends of joints that are crushed, midway between their faces where they are drawn, ``(n, 2)``."""
+        """Drawn positions of crushed joint ends, midway between their faces, ``(n, 2)`` [m]."""
         if not len(self.crushed):
             return np.zeros((0, 2))
         return np.unique(mid_lines(self.placed_faces)[self.crushed], axis=0)
 
     def crossed_lines(self, arm: float) -> Array:
-        """The lines of crosses there, half as wide as an arm [m], ``(2 n, 2, 2)`` [m]."""
+        """Lines of the crosses at `crosses` with a half width of `arm` [m], ``(2 n, 2, 2)`` [m]."""
         corners = arm * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
         return np.asarray((self.crosses[:, None, None] + corners).reshape(-1, 2, 2))
 
     def drawn_at(self, at: Array, block: ArrayLike) -> Array:
-        """Where a point ``(2,)`` [m] of a block, or of some ``(n,)``, is drawn, ``(2,)`` [m]."""
+        """Drawn position ``(2,)`` [m] of a point ``(2,)`` [m] on one block or on several ``(n,)``."""
         return np.asarray(at + self.drawn_displacement(np.atleast_1d(np.asarray(block, dtype=np.int64)), at))
 
     def drawn_displacement(self, block: Indices, at: Array) -> Array:
-        """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""
+        """Drawn displacement ``(2,)`` [m] of a point ``(2,)`` [m] on blocks ``(n,)``."""
         if not self.scene.wall[block].any() or (block < 0).any():  # a support, or an anchor in space
             rests = len(self.motion) == 0 or len(block) == 0 or (block < 0).any()
             return (
                 np.zeros(2) if rests else self.scale * carried(self.scene.blocks, block[:1], at[None], self.motion)[0]
             )
         own = np.repeat(np.isin(self.block, block), np.diff(self.first))
-        # The linear displacement that fits the corners best is exact where the block is rigid.
+        # A linear fit to the displacements of the corners is exact for rigid blocks.
         place = np.column_stack([np.ones(own.sum()), self.points[own] - at])
         fitted = np.linalg.lstsq(place, self.displacement[own], rcond=None)[0]
         return np.asarray(self.scale * fitted[0])
 
     def block_colours(self) -> Array:
-        """Colour of each polygon, ``(nc, 3)``; what moves as far as is drawn at most has that of the fastest."""
+        """Colour of each polygon, ``(nc, 3)``: `FASTEST` if drawn to move by `DRAWN` wall sizes or more."""
         if self.colouring == "course":
             colours = np.array(COURSES)[course_numbers(self.scene)[self.block] % len(COURSES)]
         else:
@@ -190,52 +190,52 @@ class DeformedShape:
 
 
 def crushed_ends(state: Indices) -> Mask:
-    """Which ends of joints are crushed, by their states ``(nj, 2)``; empty where none is."""
+    """Which joint ends are crushed, from their states ``(nj, 2)``; empty if none is."""
     crushed = np.asarray(state == JointState.CRUSHED)
     return crushed if crushed.ndim == 2 and crushed.any() else np.zeros((0, 2), np.bool_)
 
 
 def undeformed_shape(scene: Scene) -> DeformedShape:
-    """The wall as it was built."""
+    """Shape of the wall as it was built."""
     at_rest = np.zeros((len(scene.blocks), 3))
     return DeformedShape.of_rigid_blocks(scene, at_rest, np.zeros(len(scene.joints), np.int64), 0.0)
 
 
 def around(extents: Sequence[Extent]) -> Extent:
-    """The smallest extent that several are within."""
+    """Smallest extent that contains all given extents."""
     lefts, rights, bottoms, tops = zip(*extents, strict=True)
     return min(lefts), max(rights), min(bottoms), max(tops)
 
 
 def common_extent(shapes: Sequence[DeformedShape]) -> Extent:
-    """What shows all of several shapes of a wall."""
+    """Extent that contains all given shapes of a wall."""
     return around([shape.extent for shape in shapes])
 
 
 def farthest_motion(displacement: Array) -> float:
-    """Largest of some displacements ``(n, 2)``."""
+    """Largest magnitude of displacements ``(n, 2)``."""
     return float(np.hypot(*displacement.T).max())
 
 
 def visible_scale(size: float, farthest: float) -> float:
-    """Factor that makes the farthest motion [m] visible in a wall of a size [m]; 1 where nothing moves."""
+    """Factor that makes the largest motion [m] visible in a wall of a given size [m]; 1 if nothing moves."""
     return DRAWN * size / farthest if farthest > 0 else 1.0
 
 
 def series_scale(size: float, farthest: float) -> float:
-    """The same of a motion that has a size of its own: none is drawn smaller than it is."""
+    """`visible_scale` for motions of physical size: at least 1, so that none is drawn smaller than it is."""
     return max(1.0, visible_scale(size, farthest))
 
 
 def scale_note(shape: DeformedShape) -> str:
-    """What is said of how displacements are drawn."""
+    """Note on the scale at which displacements are drawn."""
     return f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
 
 
 def usual_side(scene: Scene) -> float:
-    """Smaller side that half of a wall's blocks have at least [m], by which lines and signs on them are measured.
+    """Median of the blocks' smaller sides [m], at least `Scene.block_size`, by which lines and symbols are sized.
 
-    The smallest block is no measure: a sliver or a course of tiles would thin out the lines of all others.
+    The smallest block would not do: a sliver or a course of tiles would thin out the lines of all other blocks.
     """
     low, high = scene.blocks.boxes
     sides = (high - low).min(axis=1)[scene.wall & ~scene.is_beam]
@@ -243,7 +243,7 @@ def usual_side(scene: Scene) -> float:
 
 
 def course_numbers(scene: Scene) -> Indices:
-    """Course of each block from below, ``(nb,)``, the ground's being −1."""
+    """Course number of each block, counted from below, ``(nb,)``; −1 for the ground."""
     course = np.full(len(scene.blocks), -1)
     height = scene.blocks.centroid[scene.wall, 1]
     levels = np.sort(height)
@@ -253,9 +253,9 @@ def course_numbers(scene: Scene) -> Indices:
 
 
 def outer_edges(corner: Indices, first: Indices) -> Indices:
-    """Ends of the edges that no two polygons share, ``(ne, 2)``, as places among the corners of one after another.
+    """Ends of the edges that no two polygons share, ``(ne, 2)``, as indices into the sequence of all corners.
 
-    Corners have numbers ``(n,)``, the same in polygons that share them; those of each polygon start at ``(nc + 1,)``.
+    Corners have numbers ``(n,)``, equal in polygons that share them; each polygon starts at an index ``(nc + 1,)``.
     """
     following = np.arange(1, len(corner) + 1)
     following[first[1:] - 1] = first[:-1]
@@ -266,7 +266,7 @@ def outer_edges(corner: Indices, first: Indices) -> Indices:
 
 
 def outline(scene: Scene, which: Mask | None = None) -> list[Array]:
-    """Outline of the undeformed wall, or of blocks ``(nb,)`` of it, openings and all: closed lines ``(n, 2)`` [m]."""
+    """Outline of the undeformed wall or of selected blocks ``(nb,)``, with openings: closed lines ``(n, 2)`` [m]."""
     import shapely
 
     blocks = scene.blocks
@@ -274,7 +274,7 @@ def outline(scene: Scene, which: Mask | None = None) -> list[Array]:
     own = which[blocks.owner]
     number = np.cumsum(which) - 1
     polygons = shapely.polygons(shapely.linearrings(blocks.vertices[own], indices=number[blocks.owner[own]]))
-    # What touches in the scene may be as far apart as the tolerance.
+    # Blocks in contact may be as far apart as the tolerance.
     union = shapely.union_all(shapely.buffer(polygons, blocks.tolerance, join_style="mitre"))
     return [np.asarray(ring.coords) for part in shapely.get_parts(union) for ring in (part.exterior, *part.interiors)]
 
@@ -285,8 +285,8 @@ def mid_lines(faces: Array) -> Array:
 
 
 def joint_lines(faces: Array, state: int) -> Array:
-    """What joints in a state are drawn with: both of their faces ``(n, 4, 2)`` where they are open, ``(2 n, 2, 2)``.
+    """Lines that represent joints in a state: both of their faces ``(n, 4, 2)`` if they are open, ``(2 n, 2, 2)``.
 
-    Else one line along the middle, ``(n, 2, 2)``: dashes on both faces would fill each other's gaps.
+    Otherwise one line along the middle, ``(n, 2, 2)``, because dashes on both faces would fill each other's gaps.
     """
     return np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else mid_lines(faces)

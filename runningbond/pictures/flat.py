@@ -1,7 +1,7 @@
-"""Flat drawings of a wall and of its collapse mechanism, with matplotlib alone: vectors, no VTK, tenths of a second.
+"""Vector drawings of a wall and of its collapse mechanism with matplotlib only: no VTK, drawn in tenths of a second.
 
-`draw_wall` and `draw_mechanism` draw into axes of one's own; `figure_of` makes a figure as wide as a journal's column.
-What joints do is told apart by colour, and in grey print by solid, dashed and dotted lines.
+`draw_wall` and `draw_mechanism` draw into given axes; `figure_of` makes a figure as wide as a journal column.
+Joint states differ in colour and, for grey print, in line style: solid, dashed or dotted.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SMALLEST_NUMBER, LARGEST_SHEET = 4.0, 5.0
-"""Least size of type of a block's number [pt], for which a figure is enlarged, but not by more than this."""
+"""Smallest type size of block numbers [pt], to which a figure is enlarged, and the largest enlargement factor."""
 
 THINNEST = 0.2
-"""Least width of a line [pt]; what ought to be thinner is fainter instead."""
+"""Smallest width of a line [pt]; lines that should be thinner are drawn fainter instead."""
 
 DASHES: dict[JointState, Any] = {
     JointState.OPEN: "solid",
@@ -42,8 +42,8 @@ DASHES: dict[JointState, Any] = {
 SPLIT = "#5c1400"
 """Colour of cracks through blocks."""
 
-LEGIBLE = 14.0
-"""How large blocks must be drawn for the forces in joints to be drawn too [pt]."""
+MIN_BLOCK = 14.0
+"""Drawn size of blocks [pt] above which joint forces are drawn too."""
 
 CROSS: dict[str, Any] = {"marker": "X", "ls": "none", "mfc": CRUSHED, "mec": "white", "zorder": 6}
 HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
@@ -52,15 +52,15 @@ HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DAR
 def draw_wall(axes: "Axes", scene: Scene, *, numbers: bool = False) -> None:
     """Draw a wall before any analysis: blocks and joints by material, supports, ties, and loads with their sizes.
 
-    With `numbers` each block has the number that ``assign`` knows it by.
+    With `numbers` each block shows the number by which ``assign`` refers to it.
     """
     _draw(axes, undeformed_shape(scene), wall_caption(scene), numbers=numbers)
 
 
 def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
-    """Draw the mechanism of an outcome over the undeformed wall, its joints by what they do and hinges as circles.
+    """Draw an outcome's mechanism over the undeformed wall, with joints coloured by state and hinges as circles.
 
-    Where there is none, or none that the loads drive, the undeformed wall is drawn and a note below says so.
+    If there is no mechanism, or the loads do not drive it, the undeformed wall is drawn with a note below.
     """
     shape, caption, thrust = _mechanism(scene, outcome)
     _draw(axes, shape, caption, thrust=thrust)
@@ -73,9 +73,9 @@ def figure_of(
     numbers: bool = False,
     make: "Callable[..., Figure] | None" = None,
 ) -> "Figure":
-    """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column.
+    """Make a figure of a wall, or of the mechanism of an outcome, as wide as a journal column.
 
-    With numbers of blocks it is as much larger as these need to be read. `make` makes it in place of `Figure`.
+    With block numbers the figure is enlarged until these are legible. `make` replaces `Figure`.
     """
     shape, caption, thrust = undeformed_shape(scene), wall_caption(scene), None
     if outcome is not None:
@@ -99,7 +99,7 @@ def _draw(
     thrust: Array | None = None,
     numbers: bool = False,
 ) -> None:
-    """Draw a wall by its materials, or with its resultants the mechanism of one, into axes with room around it."""
+    """Draw a wall coloured by material or, if `thrust` is given, a mechanism, with annotations and caption."""
     scene = shape.scene
     room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers, thrust=thrust)
     show_extent(axes, room.extent)
@@ -116,7 +116,7 @@ def _draw(
 
 
 def paint_mechanism(axes: "Axes", shape: DeformedShape, width: float) -> None:
-    """Draw the blocks where they move to over the undeformed wall, what joints do, and hinges; lines so wide [pt]."""
+    """Draw displaced blocks over the undeformed wall, joint states and hinges, with lines of a given width [pt]."""
     _draw_ghost(axes, shape.scene, width)
     _draw_blocks(axes, shape, shape.block_colours(), 0.5 * width)
     _hide_sound_cracks(axes, shape, width)
@@ -130,20 +130,20 @@ def paint_mechanism(axes: "Axes", shape: DeformedShape, width: float) -> None:
 
 
 def paint_blocks(axes: "Axes", shape: DeformedShape, width: float) -> None:
-    """Draw the blocks by their materials where they move to, over the undeformed wall; lines of joints so wide [pt]."""
+    """Draw displaced blocks coloured by material over the undeformed wall, for joint lines of a given width [pt]."""
     _draw_ghost(axes, shape.scene, width)
     _draw_blocks(axes, shape, block_colours(shape.scene), 0.5 * width)
 
 
 def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, Array]:
-    """What is drawn of an outcome: its shape, its caption, and its resultants where blocks are large enough."""
+    """Shape and caption of an outcome's mechanism, and its resultants if blocks are drawn large enough."""
     from matplotlib.lines import Line2D
 
     mechanism = mechanism_shape(scene, outcome)
     shape = mechanism or undeformed_shape(scene)
     key = mechanism_key([shape])
     lines, largest, beside = resultants(shape, outcome)
-    if len(lines) and mechanism and usual_side(scene) > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
+    if len(lines) and mechanism and usual_side(scene) > MIN_BLOCK * metres_of_point(shape.extent, (WIDTH, TALLEST)):
         label = f"force ≤ {readable(largest, 'N')}" + (f", {beside} too far off" if beside else "")
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=label))
     else:
@@ -152,7 +152,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
 
 
 def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:
-    """What circles, crosses, dashes and colours of mechanisms stand for: handles of a legend of what there is."""
+    """Legend handles for the circles, crosses, dashes and colours that occur in mechanisms."""
     from matplotlib.lines import Line2D
 
     circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if any(len(x.hinges) for x in shapes) else []
@@ -165,12 +165,12 @@ def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:
 
 
 def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:
-    """Width of the lines of joints [pt]: a share of the usual smaller side of blocks drawn in so many inches."""
+    """Width of joint lines [pt]: a share of `usual_side` in a drawing of a given size [in], but at most 1.2 pt."""
     return float(min(0.14 * usual_side(scene) / metres_of_point(extent, size), 1.2))
 
 
 def _draw_ghost(axes: "Axes", scene: Scene, width: float) -> None:
-    """The undeformed wall, faint."""
+    """Draw the undeformed wall faintly."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     blocks = [scene.blocks.polygon(int(i)) for i in np.flatnonzero(scene.wall)]
@@ -188,12 +188,12 @@ def _draw_blocks(axes: "Axes", shape: DeformedShape, colours: Array, width: floa
 
 
 def split_blocks(shape: DeformedShape) -> Mask:
-    """Which joints are cracks through blocks that have opened or slid ``(nj,)``."""
+    """Which joints are potential cracks through blocks that have opened or slid, ``(nj,)``."""
     return np.asarray(shape.scene.joints.inner & (shape.drawn_state != JointState.STICK))
 
 
 def _hide_sound_cracks(axes: "Axes", shape: DeformedShape, width: float) -> None:
-    """Draw potential cracks that are none in the colour of their block, whose pieces then look like what they are."""
+    """Draw potential cracks that stay closed in the colour of their block, so that the block looks whole."""
     from matplotlib.collections import LineCollection
 
     sound = shape.scene.joints.inner & (shape.drawn_state == JointState.STICK)
@@ -202,7 +202,7 @@ def _hide_sound_cracks(axes: "Axes", shape: DeformedShape, width: float) -> None
     colours = shape.block_colours()[np.searchsorted(shape.block, shape.scene.joints.block[sound, 0])]
     start, end = shape.placed_faces[sound, 0], shape.placed_faces[sound, 1]
     extent = (*axes.get_xlim(), *axes.get_ylim())
-    half = 0.25 * width * metres_of_point(extent, axes_size(axes))  # of the outline's line, which stays whole
+    half = 0.25 * width * metres_of_point(extent, axes_size(axes))  # of the outline, which must stay intact
     inwards = half * (end - start) / np.linalg.norm(end - start, axis=1)[:, None]
     within = np.stack([start + inwards, end - inwards], axis=1)
     hidden = LineCollection(list(within), colors=list(colours), lw=0.9 * width, capstyle="butt", zorder=2.5)
@@ -210,7 +210,7 @@ def _hide_sound_cracks(axes: "Axes", shape: DeformedShape, width: float) -> None
 
 
 def _draw_joints(axes: "Axes", faces: Array, state: JointState, colour: str, width: float) -> None:
-    """Gaps ``(n, 4, 2)`` [m] and lines of joints in one state."""
+    """Draw gaps ``(n, 4, 2)`` [m] and lines of joints in one state."""
     from matplotlib.collections import PolyCollection
 
     if not len(faces):
@@ -219,13 +219,13 @@ def _draw_joints(axes: "Axes", faces: Array, state: JointState, colour: str, wid
     axes.add_collection(gaps, autolim=False)
     lines = joint_lines(faces, state)
     wide = (0.75 if state == JointState.OPEN else 1.0) * width
-    if state != JointState.OPEN:  # what is dark below would fill the gaps of dashes
+    if state != JointState.OPEN:  # dark lines below would show between the dashes
         _draw_lines(axes, lines, "white", wide, "solid")
     _draw_lines(axes, lines, colour, wide, DASHES[state])
 
 
 def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: Any) -> None:
-    """Lines ``(n, 2, 2)`` [m]."""
+    """Draw lines ``(n, 2, 2)`` [m]."""
     from matplotlib.collections import LineCollection
 
     thin = {"lw": max(width, THINNEST), "alpha": float(np.clip(width / THINNEST, 0.25, 1.0))}

@@ -1,4 +1,4 @@
-"""One frame of a run: where the blocks of a wall are, and what its joint points do."""
+"""One frame of a run: the motion of the blocks of a wall and the state of its joint points at one moment."""
 
 from dataclasses import dataclass, field, replace
 
@@ -10,7 +10,7 @@ from runningbond.scene import Array, Indices, Scene, frozen
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Finite elements of the blocks: nodes ``(nn, 2)`` [m], the nodes of each triangle ``(nt, 3)`` and its block."""
+    """Finite elements of the blocks: nodes ``(nn, 2)`` [m], node indices ``(nt, 3)`` and block of each triangle."""
 
     points: Array
     corners: Indices
@@ -19,7 +19,7 @@ class Triangles:
 
 @dataclass(frozen=True, eq=False)
 class Discretisation:
-    """A wall, its joint points, and the finite elements of its blocks, None for rigid ones."""
+    """A wall, its joint points, and the finite elements of its blocks; None for rigid blocks."""
 
     scene: Scene
     points: JointPoints
@@ -27,40 +27,40 @@ class Discretisation:
 
     @classmethod
     def of_rigid_blocks(cls, scene: Scene) -> "Discretisation":
-        """Rigid blocks with contact points at the ends of their joints."""
+        """Discretise a scene into rigid blocks with contact points at the ends of their joints."""
         return cls(scene, wall_points(scene))
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One moment of a wall; joint points are those of its `Discretisation`, in that order.
+    """One moment of a wall; joint points are those of its `Discretisation`, in the same order.
 
     Parameters
     ----------
     multiplier
         λ.
     motion : (nb, 3) float
-        Displacement of each block's centroid [m] and rotation [rad], for a mechanism per motion of the fastest corner.
+        Displacement of each block's centroid [m] and rotation [rad]; in a mechanism the fastest corner moves by 1 m.
     opening, slip : (np,) float
-        Jumps [m], along the normal and the tangent that turn with block a.
+        Jumps [m] along the normal and the tangent, which rotate with block a.
     normal, tangential : (np,) float
-        Tractions [Pa], tension positive, along the normal and the tangent of the side that bears.
+        Tractions [Pa], tension positive, along the normal and the tangent of the side that carries the contact.
     state : (np,) int
         A `JointState` each.
     velocity : (nb, 3) float
-        Of the centroid [m/s] and of rotation [rad/s]; zero where none is given.
+        Velocity of the centroid [m/s] and of rotation [rad/s]; zero if not given.
     damage : (np,) float
-        0 sound … 1 broken; zero where none is given.
+        0 sound … 1 broken; zero if not given.
     displacement : (nn, 2) float
-        Of the nodes of the triangles [m]; empty for rigid blocks.
+        Displacement of the nodes of the triangles [m]; empty for rigid blocks.
     stress : (nt, 3) float
-        σ_x, σ_y, τ_xy of those triangles [Pa]; empty without them.
+        σ_x, σ_y, τ_xy of the triangles [Pa]; empty for rigid blocks.
     time
-        Since the motion of the ground began [s]; None where there is none.
+        Time since the ground motion began [s]; None without a ground motion.
     traction : (np, 2) float
-        Tractions along x and y [Pa], tension positive; empty where they have the directions of undeformed joints.
+        Tractions along x and y [Pa], tension positive; empty if they have the directions of undeformed joints.
     finite
-        Whether blocks turn by their rotation, and not to first order.
+        Whether the rotations of blocks are finite, instead of linearised.
     """
 
     multiplier: float
@@ -85,7 +85,7 @@ class Frame:
         object.__setattr__(self, "damage", self.damage if len(self.damage) else np.zeros(len(self.state)))
 
     def scaled(self, factor: float) -> "Frame":
-        """The same moment, everything having moved so many times as far."""
+        """Return the same moment with all displacements and jumps multiplied by a factor."""
         return replace(
             self,
             motion=factor * self.motion,

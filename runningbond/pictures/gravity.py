@@ -1,4 +1,4 @@
-"""Where down is: ground that tilts under a wall, and a gravity that is not the usual one."""
+"""Symbols for the direction of gravity: ground that tilts under a wall, and a gravity other than the usual one."""
 
 import math
 
@@ -12,11 +12,11 @@ from .sketch import Sketch
 from .style import DARK, DEAD
 
 TILT, STEEPEST = 2.2, math.radians(12)
-"""How deep tilted ground is drawn to fall at most, in units of length, and its steepest slope."""
+"""Largest drop of tilted ground in a drawing, in lengths `Sketch.a`, and its steepest slope [rad]."""
 
 
 def draw_tilt(sketch: Sketch, low: Array, high: Array, direction: tuple[float, float]) -> None:
-    """A ground line that falls to the side of the direction, below the level one, and the angle between them."""
+    """Draw a ground line that falls in the given direction below a level one, and the angle between them."""
     a, sense = sketch.a, math.copysign(1.0, direction[0])
     base = low[1] - 0.9 * a
     start, end = (low[0] - a, high[0] + a)[:: int(sense)]
@@ -32,7 +32,7 @@ def draw_tilt(sketch: Sketch, low: Array, high: Array, direction: tuple[float, f
 
 
 def draw_gravity(sketch: Sketch, low: Array, high: Array, gravity: tuple[float, float]) -> None:
-    """The vector of gravity beside everything else, on the side that fewer loads come from."""
+    """Draw the vector of gravity beside everything else, on the side on which loads take less room."""
     a, size = sketch.a, math.hypot(*gravity)
     left, right, *_ = sketch.room() or (low[0], high[0])
     left, right = min(left, low[0]), max(right, high[0])

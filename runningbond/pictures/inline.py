@@ -1,4 +1,4 @@
-"""A mechanism as a small drawing in a page: SVG of few bytes, blocks of one colour in one path."""
+"""Mechanisms as small SVG drawings in a page: few bytes, with all blocks of one colour in one path."""
 
 from collections.abc import Iterable
 
@@ -12,11 +12,11 @@ from .joint_state import JointState
 from .style import AT_REST, CRUSHED, STATE_COLOURS, tint
 
 WIDTH, UNITS, SHADES, SEEN_AREA = 2.4, 700, 24, 30
-"""Width on paper [in], whole units that it is drawn in, shades of a colour, and least gap that is filled [units²]."""
+"""Width on paper [in] and in drawing units, shades per colour channel, and area up to which gaps are empty [units²]."""
 
 
 def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
-    """The blocks of a wall at rest, which its mechanisms within the same extent refer to by a name."""
+    """Define the undeformed blocks of a wall as SVG paths, to which mechanisms of the same extent refer by name."""
     polygons = (scene.blocks.polygon(int(k)) for k in np.flatnonzero(scene.wall))
     paths = {name: _path(polygons, extent), f"{name}-outline": _path(outline(scene), extent)}
     defined = "".join(f'<path id="{key}" d="{path}"/>' for key, path in paths.items())
@@ -24,9 +24,9 @@ def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
 
 
 def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
-    """A shape within an extent, as an ``svg`` element of the class ``wall``, over its `inline_wall` of some name.
+    """Draw a shape within an extent as an ``svg`` element of class ``wall``, over the `inline_wall` of the same name.
 
-    Gaps of what opens are filled, joints that slide dashed, hinges circles, and crosses where joints crush. The
+    Visible gaps are filled, joints that slide are dashed, hinges are circles, and crushed joint ends are crosses. The
     undeformed outline is dashed.
     """
     left, right, bottom, top = extent
@@ -43,7 +43,7 @@ def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
         f'<use class="ghost" href="#{name}-outline"/>',
     ]
     polygons = np.split(shape.placed, shape.first[1:-1])
-    colours = shape.block_colours()  # those of one shade have that of their first: a rounded one is of another hue
+    colours = shape.block_colours()  # similar colours share the first of them: rounding would change the hue
     _, first, kind = np.unique(np.rint(colours * SHADES), axis=0, return_index=True, return_inverse=True)
     for k, colour in enumerate(colours[first]):
         own = [polygon for polygon, one in zip(polygons, moved * (1 + kind.ravel()), strict=True) if one == k + 1]
@@ -75,7 +75,7 @@ def _path(lines: Iterable[Array], extent: Extent, close: str = "z") -> str:
 
 
 def _steps(points: Array) -> str:
-    """A point and the steps from one to the next, in whole units; without spaces that a minus makes needless."""
+    """Format the first point and the steps between points in whole units, without the spaces before minus signs."""
     whole = np.rint(points).astype(int)
     start, steps = (" ".join(map(str, part.ravel())) for part in (whole[0], np.diff(whole, axis=0)))
     return f"{start}l{steps}".replace(" -", "-")

@@ -1,4 +1,4 @@
-"""Labels of a drawing, each where it hides nothing, neither another label nor an arrow; and numbers of blocks."""
+"""Labels of a drawing, placed so that they hide neither other labels nor arrows, and block numbers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,18 +13,18 @@ from runningbond.scene import Array, Scene
 from .style import DARK, SMALL_TYPE, TYPE
 
 GAP, PAD = 2.5, 0.8
-"""Distance of a label from what it is about, and air around it [pt]."""
+"""Distance of a label from its point, and margin around the label [pt]."""
 
-AWAY = 16
-"""Steps of half a line that a label may move farther away."""
+MAX_STEPS = 16
+"""Number of distances tried for a label, each half a line farther away."""
 
-SMALLER = (1.0, 0.85, 0.7, 0.55, 0.4)
-"""Sizes of type to be tried for a number in a block in which it does not fit at its usual size."""
+SIZES = (1.0, 0.85, 0.7, 0.55, 0.4)
+"""Size factors tried for a number that does not fit into its block at its usual size."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """A place for a label: a point ``(2,)`` [m], and on which side of it, ``(±1 or 0, ±1 or 0)``."""
+    """A possible place for a label: a point ``(2,)`` [m] and the side of it, ``(±1 or 0, ±1 or 0)``."""
 
     at: Array
     side: tuple[float, float]
@@ -33,7 +33,7 @@ class Spot:
 
 @dataclass(frozen=True, eq=False)
 class Label:
-    """A text and the places where it may stand, the best first."""
+    """A text and its possible places, the best first."""
 
     text: str
     spots: Sequence[Spot]
@@ -43,7 +43,7 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class PlacedLabel:
-    """A label in its place: the middle of its box ``(2,)``, and half that box's sides ``(2,)`` [m]."""
+    """A placed label: the centre of its box ``(2,)`` and half the sides of the box ``(2,)`` [m]."""
 
     label: Label
     middle: Array
@@ -52,13 +52,13 @@ class PlacedLabel:
 
     @property
     def box(self) -> Array:
-        """Lower left and upper right corner, ``(2, 2)`` [m]."""
+        """Lower left and upper right corner of the box, ``(2, 2)`` [m]."""
         return np.array([self.middle - self.half, self.middle + self.half])
 
 
 @cache
 def text_size(text: str, size: float) -> tuple[float, float]:
-    """Width and height of text in lines [pt]."""
+    """Width and height of a text of one or more lines [pt]."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextToPath
 
@@ -68,14 +68,14 @@ def text_size(text: str, size: float) -> tuple[float, float]:
 
 
 def place_labels(labels: Sequence[Label], obstacles: Array, point: float) -> list[PlacedLabel]:
-    """Put labels one after another where they cover least: no label, and as few obstacles as can be.
+    """Place labels one after another where they cover least: no other label, and as few obstacles as possible.
 
     Parameters
     ----------
     obstacles : (n, 2, 2) float
-        Boxes of what labels had better not hide [m].
+        Boxes that labels should not hide [m].
     point
-        Metres that a point of the type takes in the drawing.
+        Metres per typographic point in the drawing.
     """
     placed: list[PlacedLabel] = []
     for label in labels:
@@ -88,13 +88,13 @@ def place_labels(labels: Sequence[Label], obstacles: Array, point: float) -> lis
 
 
 def _candidates(label: Label, point: float) -> list[tuple[float, PlacedLabel]]:
-    """Places for a label, and how much worse each is than the first."""
+    """Possible places for a label, each with its penalty relative to the first."""
     width, height = text_size(label.text, label.size)
     found = []
     for rank, spot in enumerate(label.spots):
         size = np.array([height, width] if spot.upright else [width, height]) / 2 + PAD
         side = np.array(spot.side)
-        for step in range(AWAY):
+        for step in range(MAX_STEPS):
             away = GAP + step * label.size / 2
             middle = spot.at + point * side * (size + away / max(1.0, float(np.hypot(*side))))
             found.append((0.5 * rank + 1.5 * step, PlacedLabel(label, middle, point * size, spot.upright)))
@@ -102,7 +102,7 @@ def _candidates(label: Label, point: float) -> list[tuple[float, PlacedLabel]]:
 
 
 def _covered(boxes: Array, others: Array) -> Array:
-    """Share of each box ``(k, 2, 2)`` that others ``(n, 2, 2)`` cover, ``(k,)``."""
+    """Share of each box ``(k, 2, 2)`` that is covered by other boxes ``(n, 2, 2)``, ``(k,)``."""
     sides = np.minimum(boxes[:, None, 1], others[:, 1]) - np.maximum(boxes[:, None, 0], others[:, 0])
     common = np.prod(np.maximum(sides, 0.0), axis=2).sum(axis=1)
     return np.asarray(common / np.prod(boxes[:, 1] - boxes[:, 0], axis=1))
@@ -113,7 +113,7 @@ def _box(middle: shapely.Point, half: Array) -> shapely.Polygon:
 
 
 def block_numbers(scene: Scene, point: float) -> list[PlacedLabel]:
-    """The numbers that ``assign`` knows blocks by, in type as large as fits where a point takes so many metres."""
+    """Block numbers as used by ``assign``, in the largest type that fits at a given number of metres per point."""
     placed = []
     for number in range(int(scene.part_of.max()) + 1):
         own = np.flatnonzero(scene.part_of == number)
@@ -122,10 +122,10 @@ def block_numbers(scene: Scene, point: float) -> list[PlacedLabel]:
         width, height = text_size(str(number), 1.0)
         size = float(min(0.8 * (x1 - x0) / width / point, 0.75 * (y1 - y0) / height / point, SMALL_TYPE))
         half = np.array([width, height]) / 2 * size * point
-        if not outline.contains(_box(middle, half)):  # of an L: in its wider arm, as large as that is
-            largest = max(shapely.get_parts(outline), key=shapely.area)  # halves may not meet to the last bit
+        if not outline.contains(_box(middle, half)):  # L-shaped: number in the wider arm, if need be smaller
+            largest = max(shapely.get_parts(outline), key=shapely.area)  # rounding may keep halves apart
             middle = polylabel(largest, 1e-2 * (y1 - y0))
-            share = next((share for share in SMALLER if outline.contains(_box(middle, share * half))), SMALLER[-1])
+            share = next((share for share in SIZES if outline.contains(_box(middle, share * half))), SIZES[-1])
             size, half = share * size, share * half
         label = Label(str(number), (), "black", size)
         placed.append(PlacedLabel(label, np.array([middle.x, middle.y]), half, upright=False))

@@ -1,4 +1,4 @@
-"""The key to a drawing of a wall: what its colours and lines are, material by material."""
+"""The legend of a drawing of a wall: its colours and lines, material by material."""
 
 import textwrap
 from typing import Any
@@ -12,19 +12,19 @@ from .quantities import beginning, counted, minus, readable
 from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
 from .ties import TIE, tie_kinds
 
-LONGEST = 58
-"""Characters of a line of the key."""
+LINE_LENGTH = 58
+"""Characters per line of the legend."""
 
 CONDITIONS = {
     "free": "free to turn",
     "level": "kept level, free to rise",
     "fixed-height": "kept level and at its height",
 }
-"""What the conditions of a beam mean."""
+"""Descriptions of the conditions of a beam."""
 
 
 def wall_caption(scene: Scene) -> Caption:
-    """The words around a drawing of a wall: its name, its size, and the key to its colours."""
+    """Caption of a drawing of a wall: its title, its dimensions and the colour key."""
     length, height = np.subtract(*scene.blocks.extent(scene.wall)[::-1])
     used = used_block_materials(scene)
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
@@ -37,14 +37,14 @@ def wall_caption(scene: Scene) -> Caption:
 
 
 def thickness_text(scene: Scene) -> str:
-    """How thick a wall is: from the thinnest of its blocks to the thickest."""
+    """Text with the thickness of a wall, from the thinnest to the thickest of its blocks."""
     thickness = scene.thickness_of_blocks[scene.masonry]
     sizes = dict.fromkeys(f"{size:.4g}" for size in (thickness.min(), thickness.max()))
     return f"{' … '.join(sizes)} m thick"
 
 
 def block_colours(scene: Scene) -> Array:
-    """Colour of each block of the wall, ``(nw, 3)``: by material, of what is held and of the beam their own."""
+    """Colour of each block of the wall, ``(nw, 3)``: by material, except for held blocks and the beam."""
     colours = np.array([BLOCK_COLOURS[k % len(BLOCK_COLOURS)] for k in scene.material_of_block])
     colours[scene.fixed] = HELD
     if scene.beam is not None:
@@ -58,17 +58,17 @@ def joint_colour(number: int) -> str:
 
 
 def used_block_materials(scene: Scene) -> list[int]:
-    """Materials that blocks of the wall are of."""
+    """Numbers of the materials of the wall's blocks."""
     return [int(k) for k in np.unique(scene.material_of_block[scene.masonry])]
 
 
 def used_joint_materials(scene: Scene) -> list[int]:
-    """Materials that joints are of."""
+    """Numbers of the materials of joints."""
     return [int(k) for k in np.unique(scene.material_of_joint)]
 
 
 def strength(material: JointMaterial) -> str:
-    """What a joint can bear, in a line."""
+    """Strength parameters of a joint material, in one line."""
     cohesion = f", c = {_stress(material.cohesion)}" if material.cohesion else ""
     tension = f", fₜ = {_stress(material.tensile_strength)}" if material.tensile_strength else ""
     crushing = f", fₘ = {_stress(material.compressive_strength)}" if material.compressive_strength else ""
@@ -78,12 +78,12 @@ def strength(material: JointMaterial) -> str:
 
 
 def _stress(value: float) -> str:
-    """A strength, in MPa as the field has it, or in less where it is very small."""
+    """Format a strength in MPa, or in a smaller unit if it is very small."""
     return f"{value / 1e6:.3g} MPa" if value >= 1e4 else readable(value, "Pa")
 
 
 def _materials(scene: Scene) -> list[Any]:
-    """Blocks, where they are of more than one material, and joints."""
+    """Legend handles for block materials, if there are several, and for joint materials."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -108,7 +108,7 @@ def _materials(scene: Scene) -> list[Any]:
 
 
 def _bodies(scene: Scene) -> list[Any]:
-    """The beam, ties and a support that moves."""
+    """Legend handles for held blocks, the beam, ties, anchors and a moving support."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -129,7 +129,7 @@ def _bodies(scene: Scene) -> list[Any]:
 
 
 def _loads(scene: Scene) -> list[Any]:
-    """Colours of loads, where there are dead ones beside the weight, and the path of a beam that is driven."""
+    """Legend handles for a live load P, for dead and live loads if both occur, and for the path of a driven beam."""
     from matplotlib.lines import Line2D
 
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
@@ -151,4 +151,4 @@ def _loads(scene: Scene) -> list[Any]:
 
 def _wrapped(text: str) -> str:
     held = text.replace(" ", "\xa0").replace(",\xa0", ", ").replace(":\xa0", ": ")
-    return "\n".join(textwrap.wrap(held, LONGEST)).replace("\xa0", " ")
+    return "\n".join(textwrap.wrap(held, LINE_LENGTH)).replace("\xa0", " ")

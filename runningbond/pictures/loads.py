@@ -1,4 +1,4 @@
-"""Arrows of loads, with their sizes: live ones dark and times λ, dead ones blue."""
+"""Arrows of loads, labelled with their sizes: live loads dark and multiplied by λ, dead loads blue."""
 
 import math
 from collections.abc import Sequence
@@ -37,18 +37,18 @@ from .style import DARK, DEAD, MOTION, TYPE
 
 EARTH = (0.0, -9.81)
 
-SHORTEST = 0.4
-"""Length of arrows of next to no load along a line, beside those of the largest; others are in between."""
+MIN_ARROW = 0.4
+"""Arrow length of a vanishing line load relative to that of the largest line load; linear in between."""
 
-MANY = 4
-"""Forces of one load, and loads along one line, up to which each has a size of its own; of more, if there is room."""
+MAX_LABELS = 4
+"""Number of forces of one load, or of line loads in a chain, up to which each one is labelled."""
 
-ONWARD = 0.5
-"""Cosine of the turn up to which a load along a line goes on where another ends."""
+CHAIN_COSINE = 0.5
+"""Cosine of the largest angle between two line loads with a common end that count as one chain."""
 
 
 class LoadDrawing:
-    """Draws the loads of a wall into a sketch, one after another, each clear of those before it."""
+    """Draws the loads of a wall into a sketch one after another, each clear of the previous ones."""
 
     def __init__(self, sketch: Sketch, shape: DeformedShape) -> None:
         self.sketch, self.shape, self.scene, self.a = sketch, shape, shape.scene, sketch.a
@@ -80,9 +80,9 @@ class LoadDrawing:
             draw_gravity(self.sketch, self.low, self.high, load.gravity)
 
     def _sizes_along(self, loads: Sequence[Action], *, live: bool) -> dict[int, str]:
-        """What is said at each load along a line, by its `id`: of many that go on from one another once, from … to.
+        """Label of each line load by its `id`; a long chain of line loads gets one label with the range of its sizes.
 
-        So a filling on an arch is given, a load a stone. Of pressures each is said as long as its words are no larger.
+        A fill on an arch is given like this, one load per stone. All loads are labelled if each label fits on its load.
         """
         lines = [each for each in loads if isinstance(each, LineLoad)]
         sizes = [math.hypot(*each.force) for each in lines]
@@ -90,7 +90,7 @@ class LoadDrawing:
         chains = _chains(lines, 1e-6 * self.scene.size) if lines else np.zeros(0, dtype=np.int64)
         for chain in np.unique(chains):
             own = np.flatnonzero(chains == chain)
-            if len(own) <= MANY or all(self._has_room(lines[k], said[k]) for k in own):
+            if len(own) <= MAX_LABELS or all(self._has_room(lines[k], said[k]) for k in own):
                 continue
             middles = np.array([np.add(lines[k].start, lines[k].end) / 2 for k in own])
             middle = own[np.hypot(*(middles - middles.mean(axis=0)).T).argmin()]
@@ -100,7 +100,7 @@ class LoadDrawing:
         return {id(each): text for each, text in zip(lines, said, strict=True)}
 
     def _has_room(self, load: LineLoad, text: str) -> bool:
-        """Whether a text beside a load along a line is no longer than that."""
+        """Whether a text beside a line load is no longer than the load."""
         run, (width, height) = np.abs(np.subtract(load.end, load.start)), text_size(text, TYPE)
         beside = abs(load.force[0]) > abs(load.force[1])
         return bool(run[1] >= height * self.sketch.point if beside else run[0] >= width * self.sketch.point)
@@ -135,19 +135,19 @@ class LoadDrawing:
                 self._own(action, live, colour, name)
 
     def _own(self, action: Action, live: bool, colour: str, name: str) -> None:
-        """A load of a user's own, by the arrows that it gives and the forces there; of many only the sum is said."""
+        """Draw a user-defined load by its arrows and the forces there; of many forces, only the sum is labelled."""
         forces = action.forces(self.scene)
         arrows = action.arrows(self.scene)
         tips = [(arrow, arrow.at) for arrow in arrows if arrow.at is not None]
         for arrow, at in tips:
             force = forces.force[(forces.at == at).all(axis=1)].sum(axis=0)
-            if len(tips) <= MANY:
+            if len(tips) <= MAX_LABELS:
                 self._point(at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
                 continue
             tip = self.shape.drawn_at(at, arrow.block)
             self.sketch.arrow(name, [tip - 1.5 * self.a * arrow.direction, tip], colour)
             self.rows.append(np.sort([tip - 1.5 * self.a * arrow.direction, tip], axis=0))
-        if len(tips) > MANY:
+        if len(tips) > MAX_LABELS:
             arrow, at = tips[len(tips) // 2]
             total = f"Σ {readable(float(np.hypot(*forces.force.sum(axis=0))), 'N')}"
             spot = Spot(self.shape.drawn_at(at, arrow.block) - 1.5 * self.a * arrow.direction, _side(-arrow.direction))
@@ -156,14 +156,14 @@ class LoadDrawing:
             self._on_mass(arrow.direction, "forces on mass", live)
         turned = np.flatnonzero(forces.moment)
         for block in turned:
-            said = "" if len(turned) <= MANY else "Σ " if block == turned[0] else None
+            said = "" if len(turned) <= MAX_LABELS else "Σ " if block == turned[0] else None
             moment = float(forces.moment.sum() if said else forces.moment[block])
             self._turn(self.scene.blocks.centroid[block], moment, live, colour, name, said)
 
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
         size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
         direction = unit_vector(np.array(force))
-        within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # else of a corner all is outside
+        within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # a corner has no inside around it
         ahead, behind = (self._inside(within + side * 0.5 * self.a * direction) for side in (1, -1))
         self._force(self.shape.drawn_at(at, block), direction, size, colour, name, pulls=behind and not ahead)
 
@@ -178,7 +178,7 @@ class LoadDrawing:
         both: bool = False,
         pulls: bool = False,
     ) -> None:
-        """An arrow to a point, or from it where it pulls, which else ran through the wall; its size beside it."""
+        """Draw a labelled arrow to a point, or away from it if it pulls and would otherwise cross the wall."""
         a = self.a
         tip = tip + 2.2 * a * direction if pulls else tip
         tail = tip - 2.2 * a * direction
@@ -199,17 +199,17 @@ class LoadDrawing:
         self.sketch.label(text, [*spots, end] if abs(direction[1]) > 0.5 else [end, *spots], colour)
 
     def _inside(self, at: Array) -> bool:
-        """Whether a point lies in the undeformed wall: which side of a face is outside does not change as it moves."""
+        """Whether a point lies in the undeformed wall; the outer side of a face stays the same as the wall moves."""
         found = self.scene.blocks.containing(at)
         return bool(self.scene.wall[found].any())
 
     def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
-        """A row of arrows under a bar; outside the wall moved outwards until no other row is in its way."""
+        """Draw a row of arrows under a bar; outside the wall it is moved outwards until it is clear of other rows."""
         a, direction = self.a, unit_vector(np.array(load.force))
         block, parts = load.parts(self.scene)
         run = np.subtract(load.end, load.start)
         along = run / np.hypot(*run)
-        share = SHORTEST + (1 - SHORTEST) * math.hypot(*load.force) / self.largest[live]
+        share = MIN_ARROW + (1 - MIN_ARROW) * math.hypot(*load.force) / self.largest[live]
         n = int(np.clip(np.hypot(*run) / (1.5 * a) + 1, 2, 60))
         places = np.linspace(0.0, 1.0, n)
         of = block[np.minimum(np.searchsorted(parts[:, 1], places), len(block) - 1)]
@@ -228,7 +228,7 @@ class LoadDrawing:
             tips = tips + 1.5 * share * a * direction
         both = np.concatenate([tips - (0.9 if is_shear else 1.5) * share * a * direction, tips])
         air = 0.35 * a * away if is_shear else np.zeros(2)
-        inner = 1e-3 * (np.mean(both @ along) - both @ along)[:, None] * along  # rows may go on where others end
+        inner = 1e-3 * (np.mean(both @ along) - both @ along)[:, None] * along  # so that adjoining rows do not overlap
         strip = shapely.MultiPoint(np.concatenate([both - air, both + air]) + np.tile(inner, (2, 1))).convex_hull
         step = 0.5 * a * away
         while not within and any(shapely.area(strip & other) > 1e-9 * strip.area for other in self.strips):
@@ -247,7 +247,7 @@ class LoadDrawing:
             self.sketch.label(text, spots, colour)
 
     def _beam(self, load: BeamLoad, live: bool) -> None:
-        """A force on the beam, up to its edge; a displacement that it is given in the colour of motions."""
+        """Draw a force on the beam, up to its edge; a prescribed displacement has the colour of motions."""
         beam = self.scene.beam
         assert beam is not None
         forces = load.forces(self.scene)
@@ -265,12 +265,12 @@ class LoadDrawing:
             shoulder, tip = np.array([tip[0], middle[1]]), tip + aside
             arm = [self.shape.drawn_at(each, number) for each in (shoulder, shoulder + aside, tip)]
             self.sketch.line("beam", arm, lw=1.8)
-            if not self.shape.displacement.any():  # what has moved is no longer as high
+            if not self.shape.displacement.any():  # a moved beam is no longer at this height
                 self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
         self._force(self.shape.drawn_at(tip, number), direction, text, colour, name, both=both)
 
     def _height(self, at: Array, height: float, side: float) -> None:
-        """The height of a point above the base of the wall, as a dimension."""
+        """Draw the height of a point above the base of the wall as a dimension line."""
         foot = np.array([at[0], at[1] - height])
         self.sketch.line("dimension", [foot, at], lw=0.5)
         for end in (foot, at):
@@ -293,7 +293,7 @@ class LoadDrawing:
         return f"u = {span}\n{moves} moves", MOTION, "motion", True
 
     def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str, said: str | None = "") -> None:
-        """A moment's arrow, around those at the same point, and its size after what is to be said; None for no word."""
+        """Draw a moment's arrow around others at the same point; its label begins with `said`, None for no label."""
         a = self.a
         about_it = [radius for other, radius in self.turns if np.hypot(*(other - at)) < 0.5 * a]
         radius = max(about_it, default=0.3 * a) + 0.6 * a
@@ -306,12 +306,12 @@ class LoadDrawing:
         self.sketch.label(text, [Spot(at + radius * np.array(side), side) for side in sides], colour)
 
     def _on_mass(self, direction: Array, size: str, live: bool) -> None:
-        """Note a load on the mass of all blocks: those along one direction share their arrows."""
+        """Register a load on the mass of all blocks; loads in the same direction share their arrows."""
         x, y = np.round(direction, 6).tolist()
         self.pushes.setdefault((live, x, y), []).append(times_lambda(size, live=live))
 
     def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
-        """A row of arrows along the side on which all blocks are pushed, clear of where they move to, and its words."""
+        """Draw a labelled row of arrows along the side that is pushed, clear of the displaced blocks."""
         a, placed = self.a, self.shape.placed
         low, high = np.minimum(self.low, placed.min(axis=0)), np.maximum(self.high, placed.max(axis=0))
         flat = abs(direction[0]) >= abs(direction[1])
@@ -347,27 +347,27 @@ def _look(live: bool) -> tuple[str, str]:
 
 
 def _largest(loads: Sequence[Action]) -> float:
-    """The largest size of loads along lines [N/m]; 0 without one."""
+    """Largest line load [N/m]; 0 if there is none."""
     return max((math.hypot(*each.force) for each in loads if isinstance(each, LineLoad)), default=0.0)
 
 
 def _chains(loads: Sequence[LineLoad], reach: float) -> Indices:
-    """Which chain each load along a line is of ``(n,)``: of loads that go on where others end, and do not turn back."""
+    """Chain number of each line load, ``(n,)``: loads in a chain adjoin end to end without a sharp turn."""
     ends = np.array([(each.start, each.end) for each in loads]).reshape(-1, 2, 2)
     away = (ends[:, ::-1] - ends) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None, None]
     apart = np.abs(ends[:, None, :, None] - ends[None, :, None, :]).max(axis=4)
-    straight = np.einsum("aik,bjk->abij", away, away) < -ONWARD
+    straight = np.einsum("aik,bjk->abij", away, away) < -CHAIN_COSINE
     return components(np.argwhere(((apart <= reach) & straight).any(axis=(2, 3))), len(loads))
 
 
 def _side(direction: Array) -> tuple[float, float]:
-    """The side of a point that a direction leads to, one of eight."""
+    """Side of a point to which a direction leads, one of eight."""
     x, y = np.rint(1.2 * unit_vector(direction) / np.abs(unit_vector(direction)).max())
     return float(np.clip(x, -1, 1)), float(np.clip(y, -1, 1))
 
 
 def _meet(points: Array, box: Array) -> bool:
-    """Whether the box around points ``(n, 2)`` shares an area with another ``(2, 2)`` [m]."""
+    """Whether the bounding box of points ``(n, 2)`` overlaps another box ``(2, 2)`` [m]."""
     sides = np.minimum(points.max(axis=0), box[1]) - np.maximum(points.min(axis=0), box[0])
     slack = 1e-9 * np.abs(box).max()
     return bool((sides > -slack).all() and sides.max() > slack)

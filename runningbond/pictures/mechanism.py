@@ -16,9 +16,9 @@ from .joint_state import states_of_mechanism
 
 
 def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
-    """The mechanism of an outcome, its fastest corner moving by one metre; None where it has none.
+    """Frame of an outcome's mechanism, in which the fastest corner moves by one metre; None if there is none.
 
-    Tractions are those under the load of the mechanism, or zero where the outcome lists none for the ends of joints.
+    Tractions are those at the load of the mechanism, or zero if the outcome lists no forces at the ends of joints.
     """
     if not has_mechanism(scene, outcome):
         return None
@@ -35,14 +35,14 @@ def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
 
 
 def has_mechanism(scene: Scene, outcome: Outcome) -> bool:
-    """Whether an outcome lists a motion of every block."""
+    """Whether an outcome contains a motion of every block."""
     return len(outcome.motion) == len(scene.blocks)
 
 
 def outcome_check(scene: Scene, outcome: Outcome) -> MechanismCheck | None:
-    """Check the mechanism of an outcome under the load that brought the wall down; None where it has none.
+    """Check the mechanism of an outcome under the load that brought the wall down; None if there is none.
 
-    Of a wall whose ground moves it is a shape in the fall, which loads at one moment need not drive.
+    Under a ground motion, the mechanism is a shape during the fall, which the loads at one moment need not drive.
     """
     if not has_mechanism(scene, outcome):
         return None
@@ -55,7 +55,7 @@ def outcome_check(scene: Scene, outcome: Outcome) -> MechanismCheck | None:
 
 
 def mechanism_warning(scene: Scene, outcome: Outcome) -> str:
-    """What a picture of an outcome's mechanism has to say of it, in plain words; empty where nothing is wrong."""
+    """Warning that a picture of an outcome's mechanism must contain; empty if nothing is wrong."""
     check = outcome_check(scene, outcome)
     if check is None or not check.warning:
         return ""
@@ -63,10 +63,10 @@ def mechanism_warning(scene: Scene, outcome: Outcome) -> str:
 
 
 def mechanism_shape(scene: Scene, outcome: Outcome) -> DeformedShape | None:
-    """The mechanism of an outcome to be drawn; None where it has none, or one that its loads do not drive."""
+    """Shape of an outcome's mechanism for a drawing; None if there is none or the loads do not drive it."""
     frame, check = mechanism_frame(scene, outcome), outcome_check(scene, outcome)
     if frame is None or check is None or not check.is_driven:
         return None
     if outcome.status == "infeasible" and scene.settlement is None:
-        scene = replace(scene, load=replace(scene.load, live=()))  # falls without it
+        scene = replace(scene, load=replace(scene.load, live=()))  # it falls without the live load
     return DeformedShape.of_rigid_blocks(scene, frame.motion, frame.state.reshape(-1, 2), frame.multiplier)

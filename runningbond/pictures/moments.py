@@ -1,4 +1,4 @@
-"""Moments of a collapse: which of them an outcome keeps, and walls that a slider in a page moves through them."""
+"""Moments of a collapse: the states that an outcome keeps, and drawings that a slider in a page moves through them."""
 
 import base64
 import zlib
@@ -19,10 +19,10 @@ from .inline import UNITS, WIDTH, hexadecimal
 from .style import AT_REST, DRAWN, FASTEST
 
 MOMENTS = 8
-"""Most moments that an outcome keeps unless more are asked for, besides that of the largest load."""
+"""Default maximum number of moments that an outcome keeps, in addition to that of the largest load."""
 
 CHART = (16.0, 8.0, 296.0, 108.0)
-"""Left, top, width and height of the small chart of loads over displacements."""
+"""Left, top, width and height of the small load-displacement chart, in SVG units."""
 
 
 class Instant(Protocol):
@@ -36,10 +36,10 @@ class Instant(Protocol):
 
 
 def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Instant], most: int = MOMENTS) -> Outcome:
-    """The outcome with up to `most` of the states that it came by, and that of the largest load, in their order.
+    """Return the outcome with up to `most` states of its run and that of the largest load, in order.
 
-    They are evenly apart by how far the wall has gone, in time where its ground moves.
-    None are kept where blocks have cracked into pieces that the scene does not know.
+    They are evenly spaced in the displacement of the wall, or in time under a ground motion.
+    None are kept if blocks have cracked into pieces that the scene does not contain.
     """
     if not states or any(len(state.motion) != len(scene.blocks) for state in states):
         return outcome
@@ -52,7 +52,7 @@ def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Instant], most
 
 
 def distances(scene: Scene, motions: Sequence[Array] | Array) -> Array:
-    """How far the farthest corner of the wall has gone with each of some motions ``(nb, 3)``, ``(n,)`` [m]."""
+    """Largest displacement of any corner of the wall in each of several motions ``(nb, 3)``, ``(n,)`` [m]."""
     blocks = scene.blocks
     own = scene.wall[blocks.owner]
     corners = (carried(blocks, blocks.owner[own], blocks.vertices[own], motion) for motion in motions)
@@ -60,17 +60,17 @@ def distances(scene: Scene, motions: Sequence[Array] | Array) -> Array:
 
 
 def farthest_shape(scene: Scene, outcome: Outcome) -> DeformedShape:
-    """The wall where it has gone farthest, for the extent of all of its moments."""
+    """Shape of the wall at its largest displacement, which gives the extent for all of its moments."""
     motions = outcome.moments.reshape(len(outcome.moment_loads), -1, 3)
     motion = motions[distances(scene, motions).argmax()]
     return DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), np.int64), 0.0)
 
 
 def moving_wall(scene: Scene, outcome: Outcome, extent: Extent, name: str) -> dict[str, Any]:
-    """What the template ``moments`` draws, and ``moments.js`` moves, over the `inline_wall` of a name and extent.
+    """Data that the template ``moments`` draws and ``moments.js`` animates over the `inline_wall` of a name and extent.
 
-    Motions are of each block's first corner, in units of the drawing, and of its rotation, each a share of the largest
-    in 127 steps, moment after moment; all that deflated, in base 64.
+    Motions are the displacement of each block's first corner, in drawing units, and its rotation, both rounded to 1/127
+    of the largest. They are ordered by component, moment and block, deflated and encoded in base 64.
     """
     left, right, bottom, top = extent
     scale, wall = UNITS / (right - left), np.flatnonzero(scene.wall)

@@ -1,4 +1,4 @@
-"""A wall as a motion of its ground has left it: blocks where they lie, over the wall as it was built."""
+"""A wall after a ground motion: blocks in their final positions over the wall as it was built."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -19,33 +19,33 @@ from .ties import draw_ties
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BESIDE, AIR = 0.75, 0.04
-"""How far beside and above a wall it is drawn what has come off it, and the air around all, in sizes of the wall."""
+MAX_DISTANCE, MARGIN = 0.75, 0.04
+"""Distance beside and above a wall up to which fallen blocks are shown, and margin around all, in sizes of the wall."""
 
-NOTHING = 0.1
-"""What a wall hardly moves by, in gaps that count as contact."""
+NEGLIGIBLE = 0.1
+"""Motion, relative to the contact tolerance, up to which a wall is drawn without enlargement."""
 
 
 def moved_shape(scene: Scene, motion: Array) -> DeformedShape:
-    """Blocks after a motion ``(nb, 3)`` [m, m, rad]: as far as they are, or farther where that would not be seen.
+    """Shape after a motion ``(nb, 3)`` [m, m, rad], at true scale or, if that would not be visible, enlarged.
 
-    A wall that moves by next to nothing is drawn as it was: the give of its joints would look like a ruin.
+    A negligible motion is not enlarged, because the elastic deformation of joints would look like a ruin.
     """
     shape = DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), dtype=np.int64), 0.0)
     own, blocks = scene.wall[scene.blocks.owner], scene.blocks
     displacement = turned(blocks, blocks.owner, blocks.vertices, motion)[own]
     farthest = farthest_motion(displacement)
-    scale = series_scale(scene.size, farthest) if farthest > NOTHING * blocks.tolerance else 1.0
+    scale = series_scale(scene.size, farthest) if farthest > NEGLIGIBLE * blocks.tolerance else 1.0
     return replace(shape, displacement=displacement, scale=scale)
 
 
 def enlarged(shape: DeformedShape) -> str:
-    """What a title says of the scale of displacements; nothing of those that are drawn as they are."""
+    """Addition to a title with the scale of displacements; empty if they are drawn at true scale."""
     return f", {scale_note(shape)}" if shape.scale > 1 else ""
 
 
 def draw_moved(axes: "Axes", shape: DeformedShape, extent: Extent) -> None:
-    """Draw a wall as it lies, with its ties, into axes that show a part of the plane."""
+    """Draw a displaced wall with its ties into axes that show a part of the plane."""
     from matplotlib.collections import PolyCollection
 
     scene = shape.scene
@@ -59,12 +59,12 @@ def draw_moved(axes: "Axes", shape: DeformedShape, extent: Extent) -> None:
 
 
 def extent_around(shapes: list[DeformedShape]) -> Extent:
-    """What shows all of a wall's shapes but for blocks that have come far off it."""
+    """Extent of all shapes of a wall, except for blocks that have moved far away from it."""
     scene = shapes[0].scene
     (left, bottom), (right, top) = scene.blocks.extent(scene.wall)
-    far = BESIDE * scene.size
+    far = MAX_DISTANCE * scene.size
     placed = np.concatenate([shape.placed for shape in shapes])
     low = np.maximum(np.minimum([left, bottom], placed.min(axis=0)), [left - far, bottom])
     high = np.minimum(np.maximum([right, top], placed.max(axis=0)), [right + far, top + far])
-    air = AIR * scene.size
+    air = MARGIN * scene.size
     return float(low[0] - air), float(high[0] + air), float(low[1] - air), float(high[1] + air)

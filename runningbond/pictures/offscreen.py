@@ -1,4 +1,4 @@
-"""Whether this machine draws off-screen, as a process that may crash finds out."""
+"""Check whether this machine can draw off-screen, made in a child process because it may crash."""
 
 import subprocess
 import sys
@@ -13,20 +13,20 @@ shades = plotter.screenshot(return_img=True)
 raise SystemExit(0 if shades.min() < 64 < 192 < shades.max() else 1)
 """
 
-PATIENCE = 120
-"""Seconds after which a process that only draws a square is stopped."""
+TIMEOUT = 120
+"""Time [s] after which the child process, which only draws a square, is stopped."""
 
 
 @cache
 def why_not_drawn() -> str:
-    """Why there are no pictures from this machine, in one line; empty where there are.
+    """Reason why this machine cannot draw pictures, in one line; empty if it can.
 
-    VTK ends the whole process where the system has no OpenGL that works without a screen, so another one tries.
+    VTK ends the whole process if the system has no OpenGL that works without a screen, so a child process tries it.
     """
     try:
-        tried = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, timeout=PATIENCE, check=False)
+        tried = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, timeout=TIMEOUT, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:
-        return f"no pictures: a process that was to try did not end well: {error}"
+        return f"no pictures: the process that tries to draw off-screen failed: {error}"
     if tried.returncode == 0:
         return ""
     how = f"ended by signal {-tried.returncode}" if tried.returncode < 0 else "drew nothing"

@@ -1,6 +1,6 @@
 """Open a run in ParaView as its pictures show it: ``paraview --script=open_run.py``, or as a macro.
 
-Written beside each series; nothing of runningbond is needed to run it.
+A copy is written beside each series; it runs without runningbond.
 """
 
 from pathlib import Path
@@ -20,7 +20,7 @@ STATES: dict[str, tuple[str, tuple[float, float, float]]] = {}
 
 
 def moved(kind: str) -> tuple[Any, Any]:
-    """A series and its shape, displacements enlarged."""
+    """Return a series and its deformed shape with enlarged displacements."""
     beside = Path(globals().get("__file__", FOLDER / "open_run.py")).resolve().with_name(f"{kind}.pvd")
     folder = beside.parent if beside.is_file() else FOLDER
     series = simple.PVDReader(FileName=str(folder / f"{kind}.pvd"))
@@ -31,7 +31,7 @@ def moved(kind: str) -> tuple[Any, Any]:
 
 
 def shown(shape: Any, height: float) -> Any:
-    """Show something at a height above the plane, in its own colours, without shades."""
+    """Show a shape at a height above the plane, in its own colours, without shading."""
     display = simple.Show(shape, view)
     display.Representation = "Surface"
     display.Ambient, display.Diffuse, display.Specular = 1.0, 0.0, 0.0
@@ -40,7 +40,7 @@ def shown(shape: Any, height: float) -> Any:
 
 
 def outlined(shape: Any, colour: tuple[float, float, float], height: float) -> None:
-    """Show the edges of blocks, which share no points."""
+    """Show the edges of blocks, which are boundary edges because blocks share no points."""
     edges = simple.FeatureEdges(Input=simple.ExtractSurface(Input=shape))
     edges.BoundaryEdges, edges.FeatureEdges, edges.NonManifoldEdges, edges.ManifoldEdges = 1, 0, 0, 0
     display = shown(edges, height)
@@ -49,7 +49,7 @@ def outlined(shape: Any, colour: tuple[float, float, float], height: float) -> N
 
 
 def key(colours: Any, title: str) -> Any:
-    """The key to some colours, its words black."""
+    """Set up and return the legend of a colour map, with black text."""
     bar = simple.GetScalarBar(colours, view)
     bar.Title, bar.ComponentTitle = title, ""
     bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]

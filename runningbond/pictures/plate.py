@@ -1,4 +1,4 @@
-"""A plate: mechanisms side by side, a row for each wall."""
+"""A plate: mechanisms side by side, one row per wall."""
 
 import textwrap
 from collections.abc import Sequence
@@ -11,14 +11,14 @@ from .captions import show_extent, to_png
 from .deformed_shape import DeformedShape, Extent, common_extent
 from .flat import line_width, mechanism_key, paint_mechanism
 
-WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
-TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
-LETTER, GAP = 0.06, 0.1  # width of a letter, and of a gap between walls [in]
-LOWEST, HIGHEST = 0.3, 3.0  # height of a row, in widths of its walls: labels fit in it, and it leaves room for others
+WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # plate: width of a page, least width, height [in]; dots per inch
+TITLES, LINE = 0.85, 0.11  # height of title and legend together, and of a caption line under a wall [in]
+LETTER, GAP = 0.06, 0.1  # width of a character, and of the gap between walls [in]
+LOWEST, HIGHEST = 0.3, 3.0  # limits of a row's height over the width of its walls: labels fit, and other rows have room
 
 
 class PlateRow(NamedTuple):
-    """One wall: what it is called, its shape in each column, and what is said under each."""
+    """One wall: its label, its shape in each column, and the caption under each shape."""
 
     label: str
     shapes: Sequence[DeformedShape]
@@ -26,12 +26,12 @@ class PlateRow(NamedTuple):
 
 
 def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> bytes:
-    """Draw a plate as PNG."""
+    """Draw a plate as the content of a PNG file."""
     return to_png(plate_figure(title, columns, rows), DPI)
 
 
 def plate_figure(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> Figure:
-    """The figure of a plate; each row's extent shows all of its shapes."""
+    """Make the figure of a plate; the extent of each row contains all of its shapes."""
     extents = [_with_air(common_extent(row.shapes)) for row in rows]
     below = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
     ratios = [(top - bottom) / (right - left) for left, right, bottom, top in extents]
@@ -58,7 +58,7 @@ def plate_figure(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -
 
 
 def _with_air(extent: Extent) -> Extent:
-    """An extent around another, neither lower nor higher than a row may be."""
+    """Enlarge an extent so that its row is neither too low nor too high."""
     left, right, bottom, top = extent
     width, height = right - left, top - bottom
     aside, above = max(0.0, height / HIGHEST - width) / 2, max(0.0, LOWEST * width - height) / 2
@@ -66,5 +66,5 @@ def _with_air(extent: Extent) -> Extent:
 
 
 def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
-    """Text at shares of the width and height of some axes."""
+    """Write text at fractions of the width and height of axes."""
     axes.text(x, y, text, transform=axes.transAxes, parse_math=False, **style)

@@ -1,4 +1,4 @@
-"""What a run says of itself while it goes on: the load, the bracket so far, the motion, the part of the budget."""
+"""Progress lines of running models: the load, the bracket so far, the motion, and the share of the budget used."""
 
 import math
 from typing import Self
@@ -15,22 +15,22 @@ from runningbond.results.outcome import number
 
 
 class StaticProgress:
-    """Looks at `dem.static` on its way."""
+    """Observes a run of `dem.static`."""
 
     def __init__(self) -> None:
         self._path: LoadPath | None = None
 
     def __call__(self, path: LoadPath, state: StaticState) -> None:
-        """Look at a state of rest."""
+        """Record a state at rest."""
         self._path = path
 
     def line(self) -> str:
-        """How far it has come."""
+        """Return the progress line."""
         path = self._path
         if path is None:
             return "settles under its dead load"
         unit, nd = path.system.equilibrium.live_unit, path.system.freedoms
-        last = path.past[-1] if path.past and path.upper is None else path.rests[-1]  # of a wall that is led
+        last = path.past[-1] if path.past and path.upper is None else path.rests[-1]  # past: displacement control
         moved = path.system.length_unit * np.abs(last.x[:nd] - path.rests[0].x[:nd])
         upper = None if path.upper is None else unit * path.upper
         spent = f"{1 - path.budget / STATIC_BUDGET:.0%} of the budget"
@@ -38,7 +38,7 @@ class StaticProgress:
 
 
 class MotionProgress:
-    """Looks at blocks in motion on their way."""
+    """Observes a run with blocks in motion."""
 
     def __init__(self) -> None:
         self._begin("")
@@ -51,9 +51,9 @@ class MotionProgress:
         self._seen: tuple[Run, State] | None = None
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Look at a run."""
+        """Record a state of a run."""
         if multiplier != self._load:
-            # A load that was left before its budget ran out was borne, or brought the wall down.
+            # A load that ended within its budget, but without coming to rest, brought the wall down.
             if 0 < self._looks < BUDGET // Criteria.interval and self._calm < CALM:
                 self._upper = self._load
             self._load, self._looks, self._calm = multiplier, 0, 0
@@ -64,12 +64,12 @@ class MotionProgress:
         self._seen = run, state
 
     def turn_to(self, other: str) -> Self:
-        """Look, from now on, at another run for the same answer, whose name the line has; what looks at it."""
+        """Observe another run for the same answer from now on, and name it in the progress line; return itself."""
         self._begin(other)
         return self
 
     def line(self) -> str:
-        """How far it has come."""
+        """Return the progress line."""
         return f"{self._of}: {self._so_far()}" if self._of else self._so_far()
 
     def _so_far(self) -> str:
@@ -82,37 +82,37 @@ class MotionProgress:
 
 
 class ResponseProgress:
-    """Looks at a wall whose ground moves, once or at one scale after the other."""
+    """Observes a wall under a ground motion, once or at one scale after another."""
 
     def __init__(self) -> None:
         self._motions, self._scale, self._begin, self._now = 0, math.nan, 0.0, math.inf
 
     def __call__(self, run: Run, state: State, scale: float) -> None:
-        """Look at a run; the first look at a motion is at rest."""
+        """Record a state of a run; the first state of each motion is at rest."""
         if scale != self._scale or state.time < self._now:
             self._motions, self._scale, self._begin = self._motions + 1, scale, state.time
         self._now = state.time
 
     def line(self) -> str:
-        """How far it has come."""
+        """Return the progress line."""
         if not self._motions:
             return "comes to rest under its dead load"
         return f"motion {self._motions}, λ {number(self._scale)}, {self._now - self._begin:.2f} s of it"
 
 
 class SearchProgress:
-    """Looks at a search for certificates on its way."""
+    """Observes a search for certificates."""
 
     def __init__(self) -> None:
         self._said = "looks for a first certificate"
 
     def __call__(self, found: SearchLog) -> None:
-        """Look at what was found."""
+        """Record what the search has found."""
         certified = f"{len(found.certificates)} certificates, the last {found.dry} starts in vain"
         self._said = f"{found.starts} starts, {found.programs} linear programs, {certified}"
 
     def line(self) -> str:
-        """How far it has come."""
+        """Return the progress line."""
         return self._said
 
 

@@ -1,4 +1,4 @@
-"""Figures with a wall painted by PyVista: a mechanism, or one moment of a run."""
+"""Figures of a wall painted by PyVista: a mechanism, or one moment of a run."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def mechanism_figure(
     scene: Scene, outcome: Outcome, painter: Painter, colouring: Colouring = "displacement"
 ) -> "Figure":
-    """Figure of an outcome's mechanism; of the undeformed wall where there is none that the loads drive."""
+    """Figure of an outcome's mechanism, or of the undeformed wall if there is none that the loads drive."""
     mechanism = mechanism_shape(scene, outcome)
     shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
     caption = mechanism_caption(
@@ -49,7 +49,7 @@ def frame_figure(
 ) -> "Figure":
     """Figure of one moment of a model's run on a wall.
 
-    It has room for all moments of a film, and the key to them, if it is one of them.
+    If the moment is part of a film, the figure has room and a colour key for all moments of the film.
     """
     film = film or (shape,)
     load = f"{model}: {load_text(shape.scene, shape.multiplier)}"
@@ -71,7 +71,7 @@ def _figure(shape: DeformedShape, painter: Painter, caption: Caption, film: tupl
 
 @lru_cache(maxsize=1)
 def _room(film: tuple[DeformedShape, ...]) -> tuple[Extent, Room]:
-    """What shows all frames of a film, and room for the wall at rest and in those that reach farthest."""
+    """Extent of all frames of a film, and room for annotations at rest and in the frames that reach farthest."""
     extents, outwards = np.array([one.extent for one in film]), (-1, 1, -1, 1)
     farthest = dict.fromkeys(film[k] for k in (extents * outwards).argmax(axis=0))
     extent = common_extent(film)
@@ -79,7 +79,7 @@ def _room(film: tuple[DeformedShape, ...]) -> tuple[Extent, Room]:
 
 
 def draw_painted(axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent) -> None:
-    """Draw a painted wall into axes of its own, without its supports and loads, which lie below it."""
+    """Draw a painted wall into axes, with white pixels transparent; supports and loads are drawn separately."""
     image = painter.paint(shape, extent)
     seen = np.dstack([image, np.where((image == 255).all(axis=2), 0, 255).astype(np.uint8)])
     axes.imshow(seen, extent=square_around(extent), interpolation="antialiased", zorder=2.5)

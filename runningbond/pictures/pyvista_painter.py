@@ -15,38 +15,38 @@ from .vtk_safety import import_pyvista, uninterrupted_imports, vtk_errors_raised
 Image: TypeAlias = NDArray[np.uint8]
 
 WIDTHS = {JointState.SLIDE: 3.0, JointState.OPEN: 3.4, JointState.DEBONDED: 3.0}
-"""Widths of the joints' lines, in pixels of an image of the reference's size."""
+"""Widths of joint lines [pixels] in an image of the reference size."""
 
-CROSS = 0.09
-"""Half the width of a cross where a joint is crushed, in sides of the smaller blocks."""
+CROSS_ARM = 0.09
+"""Half the width of the cross at a crushed joint end, relative to `usual_side`."""
 
-FINE, FAINTEST = 12.0, 0.25
-"""Pixels of a block's height below which lines give way to what they lie on, and the least opacity of a joint's."""
+FINE_BLOCK, MIN_OPACITY = 12.0, 0.25
+"""Side of blocks [pixels] below which lines become thinner or fainter, and the smallest opacity of joint lines."""
 
-LEAST = 1.5
-"""Pixels in width below which VTK drops a line that runs along the border of two columns of pixels."""
+MIN_WIDTH = 1.5
+"""Line width [pixels] below which VTK drops lines that run along the border of two columns of pixels."""
 
-REFERENCE = 1000
-"""Pixels of a side of an image in which lines have the widths above."""
+REFERENCE_SIZE = 1000
+"""Side of the image [pixels] in which lines have the widths given here."""
 
 
 class Painter:
-    """Paints walls, one after another, with one square off-screen window whose sides have so many pixels."""
+    """Paints walls one after another with a single square off-screen window, whose side is given in pixels."""
 
-    def __init__(self, pixels: int = REFERENCE) -> None:
+    def __init__(self, pixels: int = REFERENCE_SIZE) -> None:
         self._pyvista = import_pyvista("Plotter")
         self.pixels = pixels
         self._window: Any = None
 
     def paint(self, shape: DeformedShape, extent: Extent) -> Image:
-        """Paint a wall, ``(pixels, pixels, 3)``; the image shows the square around an extent."""
+        """Paint a wall as an image ``(pixels, pixels, 3)``, which shows the square around an extent."""
         left, right, *_ = square_around(extent)
         block = usual_side(shape.scene) * self.pixels / (right - left)
         with vtk_errors_raised():
             plotter = self._cleared()
-            fill_plotter(plotter, shape, self.pixels / REFERENCE, min(block / FINE, 1.0))
+            fill_plotter(plotter, shape, self.pixels / REFERENCE_SIZE, min(block / FINE_BLOCK, 1.0))
             look_at(plotter, extent)
-            plotter.render()  # a screenshot alone would be of what was there before
+            plotter.render()  # a screenshot alone would show the previous content
             return np.array(plotter.screenshot(return_img=True, transparent_background=False))
 
     def close(self) -> None:
@@ -66,14 +66,14 @@ class Painter:
 
 
 def square_around(extent: Extent) -> Extent:
-    """The square about the middle of an extent that shows all of it."""
+    """Smallest square that contains an extent and has the same centre."""
     left, right, bottom, top = extent
     x, y, half = (left + right) / 2, (bottom + top) / 2, max(right - left, top - bottom) / 2
     return x - half, x + half, y - half, y + half
 
 
 def look_at(plotter: Any, extent: Extent) -> None:
-    """Look at a part of the plane straight from above, parallel lines staying parallel."""
+    """Look at a part of the plane straight from above, in parallel projection."""
     left, right, bottom, top = square_around(extent)
     x, y = (left + right) / 2, (bottom + top) / 2
     camera = plotter.camera
@@ -84,10 +84,10 @@ def look_at(plotter: Any, extent: Extent) -> None:
 
 
 def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: float = 1.0) -> None:
-    """Put the blocks of the wall, its joints and its undeformed outline into a window, what is in front last.
+    """Add the undeformed outline of a wall, its blocks and its joints to a window, from back to front.
 
-    Lines are `width` times as wide as in an image of the reference's size. Those of blocks are as much thinner and
-    fainter as their strength is less than 1.
+    Lines are `width` times as wide as in an image of the reference size. A `strength` below 1 makes the edges of blocks
+    fainter, and the lines of joints thinner and fainter.
     """
     flat = {"lighting": False, "show_scalar_bar": False, "reset_camera": False, "render": False}
     for ring in outline(shape.scene):
@@ -108,21 +108,21 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
             plotter.add_mesh(gaps, color=tint(state), **flat)
         if len(corners):
             faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)
-            thin = _thin(WIDTHS[state] * width * strength, max(strength, FAINTEST))
+            thin = _thin(WIDTHS[state] * width * strength, max(strength, MIN_OPACITY))
             plotter.add_mesh(faces, color=colour, **thin, **flat)
     if len(shape.crosses):
-        ends = shape.crossed_lines(CROSS * usual_side(shape.scene)).reshape(-1, 2)
+        ends = shape.crossed_lines(CROSS_ARM * usual_side(shape.scene)).reshape(-1, 2)
         crosses = _lines(ends, np.arange(len(ends)).reshape(-1, 2), 8.0)
         plotter.add_mesh(crosses, color=CRUSHED, line_width=3.4 * width, **flat)
 
 
 def _thin(width: float, opacity: float) -> dict[str, float]:
-    """How a line of a width in pixels is drawn: one that would be lost between pixels is wider, and fainter."""
-    return {"line_width": max(width, LEAST), "opacity": opacity * min(1.0, width / LEAST)}
+    """Style of a line with a given width in pixels; lines too thin to be rendered are made wider and fainter."""
+    return {"line_width": max(width, MIN_WIDTH), "opacity": opacity * min(1.0, width / MIN_WIDTH)}
 
 
 def _polygons(points: Array, first: Indices, height: float) -> Any:
-    """Polygons, one after another, at a height above the plane: what is higher is in front."""
+    """Consecutive polygons at a height above the plane; higher ones are in front."""
     return _cells(points, height, faces=np.insert(np.arange(len(points)), first[:-1], np.diff(first)))
 
 

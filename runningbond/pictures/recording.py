@@ -1,4 +1,4 @@
-"""Observers that keep a run for ParaView: every load that was borne, then the fall, each moment as it comes."""
+"""Observers that record a run for ParaView as it proceeds: every load that was carried, then the fall."""
 
 import math
 from dataclasses import replace
@@ -25,13 +25,13 @@ from runningbond.results.store import RECORD, RESPONSE_RECORD
 from runningbond.scene import Array, Scene
 
 FALL_FRAMES = 12
-"""Largest number of moments of a fall that are kept."""
+"""Largest number of recorded moments of a fall."""
 
 RESPONSE_FRAMES = 30
-"""Moments of a motion of the ground that are kept, besides those of the free motion after it."""
+"""Number of recorded moments of a ground motion, in addition to those of the free motion after it."""
 
 MECHANISM_FRAMES = 8
-"""Moments in which a mechanism, where there is nothing else, grows to a size that is seen."""
+"""Number of frames in which a mechanism grows to a visible size, if there is no run to record."""
 
 
 class FrameList(list[Frame]):
@@ -41,9 +41,9 @@ class FrameList(list[Frame]):
 
 
 class SeriesRecorder:
-    """Writes moments of a wall into a folder, or keeps them in `frames` where there is none.
+    """Writes moments of a wall into a folder, or keeps them in `frames` if no folder is given.
 
-    One that cannot be written does not end the run; see `finish`.
+    A moment that cannot be written does not end the run; see `finish`.
     """
 
     def __init__(self, discretisation: Discretisation, folder: Path | None) -> None:
@@ -53,7 +53,7 @@ class SeriesRecorder:
         self._begin(discretisation)
 
     def _begin(self, discretisation: Discretisation) -> None:
-        """Begin a series of a wall."""
+        """Begin a series for a discretised wall."""
         self.discretisation = discretisation
         self.frames = FrameList()
         self._series = self.frames if self._folder is None else TimeSeries(discretisation, self._folder)
@@ -62,7 +62,7 @@ class SeriesRecorder:
         """Write a moment."""
         if self._error is None:
             try:
-                if self._folder and not self._is_begun:  # an outcome that is there is of another run
+                if self._folder and not self._is_begun:  # an existing outcome is of another run
                     for name in (RECORD, RESPONSE_RECORD):
                         (self._folder / name).unlink(missing_ok=True)
                 self._is_begun = True
@@ -71,7 +71,7 @@ class SeriesRecorder:
                 self._error = error
 
     def finish(self, outcome: Outcome) -> None:
-        """End the series, once the outcome is known; raises the error of a moment that could not be written."""
+        """End the series once the outcome is known; raise the error of a moment that could not be written."""
         if self._error is not None:
             raise self._error
         if not len(self._series):
@@ -87,7 +87,7 @@ class StaticRecorder(SeriesRecorder):
         super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
     def __call__(self, path: LoadPath, state: StaticState) -> None:
-        """Write a state; where a path begins anew, so does the series."""
+        """Write a state; if a path starts again, so does the series."""
         if state is path.rests[0] and len(self._series):
             self._series.clear()
         scene, points, system = self.discretisation.scene, self.discretisation.points, path.system
@@ -98,16 +98,16 @@ class StaticRecorder(SeriesRecorder):
         self.keep(Frame(reaction(system, state), motion, opening, slip, normal, tangential, kinds))
 
     def finish(self, outcome: Outcome) -> None:
-        """End the series: of a wall that has no equilibrium it is the mechanism by which it falls."""
+        """End the series; for a wall without any equilibrium, write the mechanism by which it falls."""
         super().finish(outcome)
         if self._folder is not None and not len(self._series):
             record_mechanism(self.discretisation.scene, outcome, self._folder)
 
 
 class MotionRecorder(SeriesRecorder):
-    """Writes every state at rest of blocks in motion, and in the end the fall.
+    """Writes every state at rest of blocks in motion and, at the end, the fall.
 
-    Blocks and joint points are those of the run that is observed, whatever its mesh.
+    Blocks and joint points are those of the observed run, whatever its mesh.
     """
 
     def __init__(self, scene: Scene, folder: Path | None) -> None:
@@ -119,18 +119,18 @@ class MotionRecorder(SeriesRecorder):
         self._moments: list[tuple[int, Frame]] = []
         self._stride = 1
         self._fall: tuple[float, list[tuple[int, Frame]]] = (np.nan, [])
-        self._led = math.inf  # steps at the last look at a wall that is led
+        self._led = math.inf  # steps at the last call, for prescribed displacements
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Look at a run: keep the state if it is at rest, or else remember it for a while."""
+        """Write the state of a run if it is at rest; otherwise keep it temporarily as part of a possible fall."""
         self._turn_to(run.system.source)
         if run.led:
-            if state.steps < self._led:  # the way's first state, the dead load's rest, and anew on each slower one
+            if state.steps < self._led:  # first state of a path, at rest under dead load; each slower path restarts
                 self._series.clear()
             self._led = state.steps
         elif multiplier != self._multiplier:
             self._next_load(multiplier)
-        elif state is not self._held:  # the same load once more, the dead load slowly
+        elif state is not self._held:  # the same load once more: the dead load, applied slowly
             self._moments, self._stride = [], 1
         self._held = state
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
@@ -144,7 +144,7 @@ class MotionRecorder(SeriesRecorder):
                 self._stride = 2 * (self._moments[1][0] - self._moments[0][0])
 
     def _turn_to(self, wall: object) -> None:
-        """Turn to the mesh of a run, if it has another; the pieces of blocks that may crack are blocks there."""
+        """Switch to the mesh of a run if it differs; pieces of blocks that may crack are separate blocks there."""
         if not isinstance(wall, ModalWall) or wall is self._wall:
             return
         self._wall = wall
@@ -152,7 +152,7 @@ class MotionRecorder(SeriesRecorder):
         self._begin(Discretisation(wall.scene, wall.elements.points, triangles))
 
     def _next_load(self, multiplier: float) -> None:
-        if multiplier == 0.0 and len(self._series):  # the search begins anew, more slowly
+        if multiplier == 0.0 and len(self._series):  # the search restarts with slower loading
             self._series.clear()
         if self._moments:
             self._fall = (self._multiplier, self._moments)
@@ -162,16 +162,16 @@ class MotionRecorder(SeriesRecorder):
         """Write the fall under the load that brought the wall down, and end the series."""
         if self._moments:
             self._fall = (self._multiplier, self._moments)
-        self._is_begun = True  # by now the outcome that is there is this run's
+        self._is_begun = True  # from now on an existing outcome is of this run
         if self._fall[0] == self._load_of_fall(outcome):
             for _, frame in self._fall[1]:
                 self.keep(frame)
         super().finish(outcome)
 
     def _load_of_fall(self, outcome: Outcome) -> float | None:
-        """The load under which the wall fell: that of the curve's end, for what breaks takes the bracket beyond it.
+        """Load under which the wall fell: the last one of the curve, because breaking joints extend the bracket beyond.
 
-        It is none beside the dead load where that brings the wall down.
+        It is 0 if the dead load alone brings the wall down, and None if the wall did not fall.
         """
         if outcome.status == "infeasible":
             return 0.0
@@ -179,12 +179,12 @@ class MotionRecorder(SeriesRecorder):
         return float(outcome.curve[-1, 1]) if len(rests) and rests[-1] == 0 else None
 
     def _frame(self, run: Run, state: State, multiplier: float) -> Frame:
-        """The moment of a run."""
+        """Frame of the current state of a run."""
         wall = self.discretisation
         opening, slip, normal_force, tangential_force, damage, closure = run.at_joints(state)
         normal, tangential = np.array([normal_force, tangential_force]) / wall.points.area
         kinds = states_under_load(wall.scene, wall.points, opening, normal, tangential, damage, closure)
-        # Where blocks may crack, the motion of whole blocks is one thing; here each piece is a block.
+        # Motions are those of bodies, not of whole blocks: if blocks may crack, each piece is a block here.
         motion, velocity = run.system.motion_of_bodies(state.motion), run.system.motion_of_bodies(state.velocity)
         finite = run.system.contacts is not None
         displacement, traction, stress = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3))
@@ -211,7 +211,7 @@ class MotionRecorder(SeriesRecorder):
         )
 
     def _far_displacement(self, displacement: Array, motion: Array) -> Array:
-        """Displacements of nodes ``(nn, 2)`` [m] at finite displacements, whose deformations turn with their blocks."""
+        """Nodal displacements ``(nn, 2)`` [m] at finite displacements; deformations rotate with their blocks."""
         if self._wall is None:
             return displacement
         blocks, block, at = self._wall.scene.blocks, self._wall.mesh.block, self._wall.mesh.points
@@ -221,7 +221,7 @@ class MotionRecorder(SeriesRecorder):
     def _far_jumps(self, displacement: Array, motion: Array) -> tuple[Array, Array]:
         """Opening and slip ``(np,)`` [m] at finite displacements.
 
-        Those of the law are where blocks have come to along the sides that touch, and none where these have parted.
+        The jumps of the joint law cannot be used: they refer to the sides in contact and are missing if these parted.
         """
         scene, points = self.discretisation.scene, self.discretisation.points
         if self._wall is None:
@@ -233,7 +233,7 @@ class MotionRecorder(SeriesRecorder):
 
 
 class ResponseRecorder(MotionRecorder):
-    """Remembers moments of a wall whose ground moves, evenly spaced, and writes those of the last motion in the end."""
+    """Keeps evenly spaced moments of a wall under a ground motion, and writes those of the last motion at the end."""
 
     def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(scene, folder)
@@ -241,7 +241,7 @@ class ResponseRecorder(MotionRecorder):
         self._start = self._now = self._next = self._spacing = 0.0
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Remember a moment if it is time."""
+        """Keep a moment if it is due."""
         self._turn_to(run.system.source)
         if multiplier != self._multiplier or state.time < self._now:  # another motion
             self._multiplier, self._moments, self._spacing = multiplier, [], self._duration / RESPONSE_FRAMES
@@ -255,17 +255,17 @@ class ResponseRecorder(MotionRecorder):
             self._next = state.time + self._spacing
 
     def _load_of_fall(self, outcome: Outcome) -> float | None:
-        """The upper scale: the curve has all that were tried."""
+        """The upper scale, because the curve contains all scales that were tried."""
         return outcome.upper
 
 
 def motion_recorder(scene: Scene, folder: Path | None) -> MotionRecorder:
-    """Of a run of a scene whose ground moves the fall, of any other the loads that were borne as well."""
+    """Recorder of a run: of the last motion under a ground motion, else of the carried loads and the fall."""
     return (ResponseRecorder if scene.history else MotionRecorder)(scene, folder)
 
 
 def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
-    """Write the mechanism of an outcome as it grows; nothing where it has none."""
+    """Write the mechanism of an outcome as a series in which it grows; nothing if there is none."""
     frame = mechanism_frame(scene, outcome)
     series = TimeSeries(Discretisation.of_rigid_blocks(scene), folder)
     series.clear()

@@ -1,4 +1,4 @@
-"""Pictures of a result folder, drawn from what the folder holds and nothing else."""
+"""Pictures of a result folder, drawn only from what the folder contains."""
 
 import io
 from collections.abc import Iterable
@@ -34,47 +34,47 @@ from .vtk_safety import VtkError, import_pyvista
 
 FILM_DPI = 150
 FRAME_TIME, LAST_FRAME_TIME = 150, 2000
-"""Milliseconds that a frame of a film is shown, and its last one."""
+"""Time for which a frame of a film is shown, and its last frame [ms]."""
 
 EXACT_COLOURS = 160
-"""Colours of a film that are as they were drawn; shades between them share the other ones of a GIF."""
+"""Number of GIF colours kept exactly as drawn; all other shades of a film share the rest of the palette."""
 
 PACKED = np.array([256**2, 256, 1])
-"""What makes one number of a colour's red, green and blue."""
+"""Weights that pack the red, green and blue of a colour into one number."""
 
 VECTOR = {".svg": to_svg, ".png": to_png}
-"""Writers of flat drawings, by the ending of their files."""
+"""Writers of flat drawings, by file ending."""
 
-DRAWN = tuple(f"mechanism{ending}" for ending in VECTOR)
-"""Drawings of a mechanism."""
+DRAWINGS = tuple(f"mechanism{ending}" for ending in VECTOR)
+"""File names of the drawings of a mechanism."""
 
-PICTURES = (*DRAWN, "rendering.png", "last-moment.png", "film.gif")
-"""What a folder can show, where it has a mechanism or a time series."""
+PICTURES = (*DRAWINGS, "rendering.png", "last-moment.png", "film.gif")
+"""File names of all pictures of a folder with a mechanism or a time series."""
 
 
 def draw_folder(folder: Path) -> list[Path]:
-    """Draw the mechanism of a folder flat, ``mechanism.svg`` and ``mechanism.png``, if it has one; the files."""
+    """Draw a folder's mechanism, if any, as ``mechanism.svg`` and ``mechanism.png``, and return these files."""
     if holds_response(folder):
         return []
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
     if not has_mechanism(scene, outcome):
         return []
     figure = figure_of(scene, outcome)
-    for name, write in zip(DRAWN, VECTOR.values(), strict=True):
+    for name, write in zip(DRAWINGS, VECTOR.values(), strict=True):
         write_atomically(folder / name, write(figure))
-    return [folder / name for name in DRAWN]
+    return [folder / name for name in DRAWINGS]
 
 
 def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
-    """Paint what a folder has to show: its mechanism, and of its time series the last moment and a film.
+    """Paint a folder's mechanism, and the last moment and a film of its time series.
 
-    A response has no mechanism, and its last moment is in its chart. It gives the files that it wrote:
-    ``rendering.png``, ``last-moment.png`` and ``film.gif``.
+    Return the files that were written: ``rendering.png``, ``last-moment.png`` and ``film.gif``. A response has no
+    mechanism, and its last moment is in its chart.
 
     Raises
     ------
     StoreError
-        If the folder holds no outcome or response that can be trusted, or not its scene, or a damaged time series.
+        If the folder contains no undamaged outcome or response, or no scene, or a damaged time series.
     """
     scene, written = load_scene(folder), list[Path]()
     with closing(Painter()) as painter:
@@ -92,12 +92,12 @@ def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[P
 def _render_series(
     folder: Path, scene: Scene, title: str, model: str, colouring: Colouring, painter: Painter
 ) -> list[Path]:
-    """Draw the moments of a folder, those of a film from one point of view and to one scale: that of the farthest."""
+    """Draw the last moment of a folder, and a film with one view and one scale, that of the largest motion."""
     shapes = _shapes(folder, scene, colouring)
     if not shapes:
         return []
     last, written = shapes[-1], []
-    if len({shape.multiplier for shape in shapes}) > 1:  # under one load, it is the mechanism once more
+    if len({shape.multiplier for shape in shapes}) > 1:  # under a single load it would repeat the mechanism
         write_atomically(folder / "last-moment.png", to_png(frame_figure(last, title, model, painter)))
         written.append(folder / "last-moment.png")
     if len(shapes) > 1:
@@ -123,7 +123,7 @@ def _shapes(folder: Path, scene: Scene, colouring: Colouring) -> list[DeformedSh
 
 
 def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
-    """Show a folder's mechanism, its last moment or its undeformed wall in a window, until that is closed."""
+    """Show a folder's mechanism, else its last moment or undeformed wall, in a window until it is closed."""
     pv = import_pyvista("Plotter")
     scene = load_scene(folder)
     outcome = None if holds_response(folder) else load_outcome(folder)[0]
@@ -139,9 +139,9 @@ def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
 
 
 def _film(contents: Iterable[bytes]) -> bytes:
-    """PNG files of one size as an animated GIF, whose colours are common to all.
+    """Convert PNG files of one size into an animated GIF with a common palette.
 
-    What is drawn in one colour keeps it, however small: colours that are seen most are in the palette as they are.
+    The most frequent colours are in the palette unchanged, so that things drawn in one colour keep it, however small.
     """
     from PIL import Image
 
@@ -166,5 +166,5 @@ def _film(contents: Iterable[bytes]) -> bytes:
 
 
 def _unpacked(colours: Indices) -> NDArray[np.uint8]:
-    """Red, green and blue of numbers that `PACKED` made of them, ``(n, 3)``."""
+    """Red, green and blue ``(n, 3)`` of colours that were packed with `PACKED`."""
     return np.asarray(colours[:, None] // PACKED % 256, dtype=np.uint8)

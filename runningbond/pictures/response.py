@@ -1,4 +1,4 @@
-"""The response of a wall to a motion of its ground: ground, drift, base shear and energies over time, and the wall."""
+"""Figure of a wall's response to a ground motion: ground, drift, base shear and energies over time, and the wall."""
 
 import textwrap
 from dataclasses import dataclass, field
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
 WIDE, CHARTS, WALLS, TITLES = 6.4, 6.4, 2.4, 0.3
-"""Width of the figure, heights of its charts, of the drawings of the wall at most, and of the titles in it [in]."""
+"""Width of the figure, height of its charts, largest height of its wall drawings, and height of their titles [in]."""
 
 LETTERS = 112
-"""Letters in a line of the title."""
+"""Characters per line of the title."""
 
-SPENT = dict(zip(("kinetic", "stored", "friction", "damped"), (*CHART_COLOURS[:3], "0.9"), strict=True))
-"""What energy becomes, and its colour."""
+ENERGY_COLOURS = dict(zip(("kinetic", "stored", "friction", "damped"), (*CHART_COLOURS[:3], "0.9"), strict=True))
+"""Colours of kinetic and stored energy, and of the energy dissipated by friction and damping."""
 
 
 def response_figure(response: Response, scene: Scene) -> "Figure":
-    """Draw what the ground did and what became of its wall: over time, and the wall as it gave way and as it lies."""
+    """Draw the response over time, and the wall as it gives way and in its final state."""
     from matplotlib.figure import Figure
 
     shapes = shapes_of(response, scene)
@@ -50,14 +50,14 @@ def response_figure(response: Response, scene: Scene) -> "Figure":
 
 
 def shapes_of(response: Response, scene: Scene) -> dict[str, DeformedShape]:
-    """The wall as it gave way, where it fell, and as it is in the end, by what they are called."""
+    """Shapes of the wall as it gives way, if it fell, and in its final state, by title."""
     states = {"as it gives way": response.shape} if response.verdict == "collapse" else {}
     states |= {f"after {response.time[-1]:.3g} s": response.motion}
     return {name: moved_shape(scene, motion) for name, motion in states.items()}
 
 
 def _draw_charts(figure: "SubFigure", response: Response) -> None:
-    """Draw the acceleration of the ground, the drift of the top, the base shear, and what became of the energy."""
+    """Draw the ground acceleration, the drift of the top, the base shear and the energies over time."""
     ground, drift, shear, energy = figure.subplots(4, 1, sharex=True, height_ratios=(1, 1.5, 1, 1.7))
     time = response.time
     lines = (
@@ -69,8 +69,10 @@ def _draw_charts(figure: "SubFigure", response: Response) -> None:
         axes.plot(time, values, color=DARK, lw=0.9)
         axes.axhline(0.0, color="0.7", lw=0.5, zorder=0)
         axes.set_ylabel(name, fontsize=SMALL_TYPE + 1)
-    parts = [response.energy[:, ENERGIES.index(name)] for name in SPENT]
-    energy.stackplot(time, np.maximum(parts, 0.0), colors=SPENT.values(), labels=SPENT, lw=0.3, ec="white")
+    parts = [response.energy[:, ENERGIES.index(name)] for name in ENERGY_COLOURS]
+    energy.stackplot(
+        time, np.maximum(parts, 0.0), colors=ENERGY_COLOURS.values(), labels=ENERGY_COLOURS, lw=0.3, ec="white"
+    )
     energy.plot(time, response.energy[:, :2].sum(axis=1), color=DARK, lw=0.9, label="input + weight")
     energy.set_ylabel("energy [J]", fontsize=SMALL_TYPE + 1)
     energy.set_xlabel("time [s]", fontsize=SMALL_TYPE + 1)
@@ -87,12 +89,12 @@ def _draw_charts(figure: "SubFigure", response: Response) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DrawnResponse(Response):
-    """What `Wall.respond` returns: a response and its wall, with a chart in notebooks; none where it was not shaken."""
+    """Result of `Wall.respond`: a response and its wall, shown as a chart in notebooks unless it was not shaken."""
 
     wall: Scene = field(kw_only=True)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw the wall as it lies in the end into axes, or a figure of its own where none are given."""
+        """Draw the wall in its final state into axes, or into a new figure if none are given."""
         if axes is None:
             from matplotlib.pyplot import figure
 

@@ -1,4 +1,4 @@
-"""Tables for people: in Markdown, and as the text of a CSV file."""
+"""Tables for readers, in Markdown and as the text of a CSV file."""
 
 import csv
 import io

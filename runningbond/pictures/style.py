@@ -1,6 +1,6 @@
-"""Colours, widths and sizes of type, the same in vector drawings and in those painted by PyVista.
+"""Colours, lengths and type sizes, the same in vector drawings and in those painted by PyVista.
 
-Colours of one kind differ in lightness, for print in grey, and for colour-blind eyes; tests/pictures/test_colours.py.
+Colours of one kind differ in lightness, for grey print, and for colour-blind readers: tests/pictures/test_colours.py.
 """
 
 from typing import Literal, TypeAlias
@@ -8,13 +8,13 @@ from typing import Literal, TypeAlias
 from .joint_state import JointState
 
 Colouring: TypeAlias = Literal["displacement", "course"]
-"""Blocks are coloured by how far they move, or by course."""
+"""Whether blocks are coloured by displacement or by course."""
 
 Colour: TypeAlias = tuple[float, float, float]
 
 AT_REST: Colour = (0.955, 0.945, 0.925)
 FASTEST: Colour = (0.50, 0.66, 0.84)
-"""Colours of a block at rest, and of the one that moves fastest."""
+"""Colours of a block at rest and of the block that moves most."""
 
 COURSES: tuple[Colour, Colour] = ((0.93, 0.90, 0.85), (0.80, 0.86, 0.93))
 """Colours of alternate courses."""
@@ -29,7 +29,7 @@ STATE_COLOURS: dict[JointState, str] = {
     JointState.DEBONDED: "#000000",
 }
 CRUSHED = "#aa00e6"
-"""Colour of the crosses at ends of joints that crush, which have no line of their own."""
+"""Colour of the crosses at crushed joint ends; joints that crush have no line colour."""
 
 STATE_NAMES = {
     JointState.SLIDE: "slides",
@@ -42,7 +42,7 @@ DARK = "0.25"
 """Colour of annotations, live loads and notes."""
 
 DEAD, MOTION = "#0064a8", "#8531fa"
-"""Colours of dead loads, whose arrows have hollow heads, and of what is moved by a given displacement."""
+"""Colours of dead loads, whose arrows have hollow heads, and of prescribed displacements."""
 
 BEAM: Colour = (0.55, 0.56, 0.58)
 BLOCK_COLOURS: tuple[Colour, ...] = (
@@ -57,23 +57,23 @@ BLOCK_COLOURS: tuple[Colour, ...] = (
 """Colours of the beam, and of blocks by material."""
 
 JOINT_COLOURS = ("0.35", "#bb932e", "#6f2008", "#67c7e5", "#358648", "#3f0340")
-"""Joints by material."""
+"""Colours of joints by material."""
 
 CHART_COLOURS = ("#2f3568", "#64baab", "#bf8111", "#943223", "#9b4db5")
-"""Series of charts."""
+"""Colours of the series of charts."""
 
 UNIT = 8.0
-"""Length in which arrows and supports are measured [pt]."""
+"""Unit of length for the size of arrows and supports [pt]."""
 
 TYPE, SMALL_TYPE = 7.5, 6.5
-"""Sizes of type [pt]: titles and annotations, notes and keys."""
+"""Type sizes [pt]: of titles and annotations, and of notes and keys."""
 
-DRAWN, SEEN = 0.12, 0.004
-"""How far the fastest corner is drawn to move, and the least gap that can be seen as one, in sizes of the wall."""
+DRAWN, VISIBLE_GAP = 0.12, 0.004
+"""Drawn displacement of the fastest corner, and smallest gap that is visible, both relative to `Scene.size`."""
 
 
 TINTS = {JointState.SLIDE: 0.45, JointState.OPEN: 0.25, JointState.DEBONDED: 0.45}
-"""How much of their colour gaps are filled with: those that open are nearly white, in grey print too."""
+"""Strength of the state colour that fills gaps; gaps of open joints are light, also in grey print."""
 
 
 def tint(state: JointState) -> Colour:

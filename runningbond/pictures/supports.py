@@ -1,4 +1,4 @@
-"""What holds a wall: hatched ground, pins and rollers, supports that move, and what guides the beam."""
+"""Supports of a wall: hatched ground, pins and rollers, moving supports, and guides of the beam."""
 
 import numpy as np
 import shapely
@@ -17,11 +17,11 @@ from .style import DARK, MOTION, SMALL_TYPE
 GREY = "0.45"
 
 DEPTH = 0.55
-"""How far ground is drawn below the lowest block, in lengths that marks are measured in: the scale is under it."""
+"""Depth to which ground is drawn below the lowest block, in lengths `Sketch.a`; the scale bar is below it."""
 
 
 def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
-    """Hatch what does not move, put triangles under pins, on rollers where these may move aside."""
+    """Draw the ground, hatching below fixed blocks, and triangles under pins, on rollers if one direction is free."""
     scene, a = shape.scene, sketch.a
     low, _ = scene.blocks.extent(scene.wall)
     ground = np.flatnonzero(~scene.wall)
@@ -51,9 +51,9 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
 
 
 def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, moving: Mask) -> None:
-    """Where supports move to, larger than they do, and arrows with their displacement and their rotation.
+    """Draw the enlarged motion of supports, and arrows labelled with their displacement and rotation.
 
-    Where supports are drawn moved, the arrows alone. Of a path it is the farthest end, and how many moves it has.
+    If supports are already drawn displaced, only the arrows. For a path, its farthest end and its number of moves.
     """
     scene, a = shape.scene, sketch.a
     low, high = scene.blocks.extent(scene.wall)
@@ -67,7 +67,7 @@ def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, m
     surface = np.stack([ends, np.repeat(level[:, None], 2, axis=1)], axis=2)
     moved = carried(scene.blocks, np.repeat(numbers, 2), surface.reshape(-1, 2), farthest * settlement.motion(scene))
     visible = 1.1 * a / np.hypot(*moved.T).max() * moved.reshape(-1, 2, 2)
-    below = min(float(level.min()), low[1] - DEPTH * a)  # of what is drawn of the ground
+    below = min(float(level.min()), low[1] - DEPTH * a)  # bottom of the drawn ground
     at = np.array([(ends.min() + ends.max()) / 2, below - 0.75 * a])
     drawn = shape.drawn_displacement(numbers[:1], at)
     for line in surface + visible if not drawn.any() else []:
@@ -104,7 +104,7 @@ def _draw_pin(sketch: Sketch, tip: Array, *, roller: bool) -> None:
 
 
 def draw_beam(sketch: Sketch, shape: DeformedShape) -> None:
-    """The outline of the beam, and rollers that keep it level: under a bar, or under what keeps its height."""
+    """Draw the outline of the beam and rollers that keep it level: under a bar, or hatching if its height is fixed."""
     scene, beam, a = shape.scene, shape.scene.beam, sketch.a
     if beam is None or beam.block is None:
         return
@@ -131,7 +131,7 @@ def draw_beam(sketch: Sketch, shape: DeformedShape) -> None:
 
 
 def draw_scale(sketch: Sketch, shape: DeformedShape) -> None:
-    """A bar of a round length, below everything else."""
+    """Draw a scale bar of a round length below everything else."""
     (left, base), (right, _) = shape.scene.blocks.extent(shape.scene.wall)
     length, a = round_length((right - left) / 4), sketch.a
     lowest = [(sketch.room() or (0.0, 0.0, base))[2], float(shape.placed[:, 1].min()), base - DEPTH * a]
@@ -154,7 +154,7 @@ def _above(outline: Array, level: float) -> list[Array]:
 
 
 def _hatched(sketch: Sketch, name: str, surface: ArrayLike, depth: float, colour: str = GREY) -> None:
-    """A body behind a surface ``(2, 2)``, on its right as one goes from end to end, of which only hatching shows."""
+    """Draw a hatched body without an outline behind a surface ``(2, 2)``, on the right when going from start to end."""
     start, end = np.array(surface)
     run = (end - start) / np.hypot(*(end - start))
     back = depth * np.array([run[1], -run[0]])

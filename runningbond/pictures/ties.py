@@ -1,4 +1,4 @@
-"""Ties: lines from end plate to end plate, or to an anchor in hatched space."""
+"""Ties: lines between end plates, or from an end plate to a hatched anchor."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ TIE = "0.1"
 
 
 def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
-    """Draw ties between where their ends have moved to, several with the numbers that tables and messages know."""
+    """Draw ties between the displaced positions of their ends; several ties are numbered as in tables and messages."""
     ties, a = shape.scene.ties, sketch.a
     for k in range(len(ties)):
         ends = np.array([shape.drawn_at(*end) for end in zip(ties.ends[k], ties.block[k], strict=True)])
@@ -42,7 +42,7 @@ def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
 
 
 def tie_kinds(scene: Scene) -> dict[str, list[int]]:
-    """Ties that are alike, by what a key says of them."""
+    """Group identical ties by their description in a legend."""
     ties = scene.ties
     kinds: dict[str, list[int]] = {}
     for k in range(len(ties)):

@@ -1,4 +1,4 @@
-"""Time series for ParaView: a VTU file a frame, and a PVD file that lists them, readable after every frame."""
+"""Time series for ParaView: one VTU file per frame and a PVD file that lists them, readable after every frame."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -18,25 +18,25 @@ from .vtk_grids import DISPLACEMENT, Grid, GridBuilder
 from .vtk_safety import import_pyvista, vtk_errors_raised
 
 KINDS = ("blocks", "joints")
-"""What a series consists of: ``blocks.pvd`` and ``joints.pvd``, each with its own VTU files."""
+"""Parts of a series: ``blocks.pvd`` and ``joints.pvd``, each with its own VTU files."""
 
 MACRO = "open_run.py"
-"""Macro with which ParaView opens a series as pictures show it."""
+"""File name of the macro with which ParaView opens a series as pictures show it."""
 
 MAX_FRAMES = 40
-"""Frames that a series keeps; of more, those are deleted that lie nearest to others."""
+"""Largest number of frames in a series; beyond it, the frames closest to their neighbours are deleted."""
 
 
 class TimeSeries:
-    """Frames of one wall, in the order in which they come; the first replaces what was there before.
+    """Frames of one wall in order of arrival; the first one replaces any earlier series in the folder.
 
-    Its folder holds ``blocks.pvd``, ``joints.pvd`` and a folder ``frames`` with the VTU files.
+    The folder holds ``blocks.pvd``, ``joints.pvd`` and a folder ``frames`` with the VTU files.
     """
 
     def __init__(self, discretisation: Discretisation, folder: Path) -> None:
         self._grids = GridBuilder(discretisation)
         self._folder = folder
-        self._frames: dict[int, tuple[float | None, float]] = {}  # their times [s] and loads by their numbers
+        self._frames: dict[int, tuple[float | None, float]] = {}  # time [s] and load by frame number
         self._next = 0
         self._farthest, self._size = 0.0, discretisation.scene.size
         self._is_started = False
@@ -45,7 +45,7 @@ class TimeSeries:
         return len(self._frames)
 
     def clear(self) -> None:
-        """Delete all frames, also those that were there before."""
+        """Delete all frames, including those of an earlier series."""
         self._frames, self._next, self._is_started, self._farthest = {}, 0, True, 0.0
         (self._folder / MACRO).unlink(missing_ok=True)
         for kind in KINDS:
@@ -54,7 +54,7 @@ class TimeSeries:
                 stale.unlink()
 
     def add(self, frame: Frame) -> None:
-        """Write a frame; the series can be read before and after."""
+        """Write a frame; the series is readable before and after."""
         if not self._is_started:
             self.clear()
         grids = {"blocks": self._grids.blocks(frame), "joints": self._grids.joints(frame)}
@@ -72,10 +72,10 @@ class TimeSeries:
             files = [(time, self._file(kind, number)) for time, number in zip(times, self._frames, strict=True)]
             write_atomically(self._folder / f"{kind}.pvd", _pvd(files, self._folder))
             for number in dropped:
-                self._file(kind, number).unlink(missing_ok=True)  # of another run into the same folder
+                self._file(kind, number).unlink(missing_ok=True)  # another run into this folder may have deleted it
 
     def _nearest(self) -> int:
-        """Number of the frame that is missed least: between the two nearest, but not the one of the largest load."""
+        """Number of the frame to delete: the one with the nearest neighbours by number, but not the largest load."""
         numbers = list(self._frames)
         largest = max(numbers, key=lambda number: self._frames[number][1])
         between = {
@@ -86,7 +86,7 @@ class TimeSeries:
         return min(between, key=between.__getitem__)
 
     def write_macro(self) -> None:
-        """Write the macro with which ParaView opens the series, enlarged as pictures of its largest motion are."""
+        """Write the macro with which ParaView opens the series, enlarged like pictures of its largest motion."""
         from matplotlib.colors import to_rgb
 
         scale = series_scale(self._size, self._farthest)
@@ -112,10 +112,10 @@ class TimeSeries:
 
 
 def times_shown(frames: Sequence[tuple[float | None, float]]) -> list[float]:
-    """Times under which frames are listed, each larger than the one before, from their times [s] and loads.
+    """Increasing times under which frames are listed, from their times [s] and loads.
 
-    They are the seconds, or the loads where these go up; of frames under one load, as in a fall, each is later by a
-    millionth. Where loads go down again or stay what they are, they are the numbers of the frames.
+    These are the times in seconds, if known, or the loads, if they never decrease; frames at the same load, as in a
+    fall, are each later by a millionth of the load range. If loads decrease or stay constant, frame indices are used.
     """
     seconds = [time for time, _ in frames if time is not None]
     if len(seconds) == len(frames):
@@ -131,9 +131,9 @@ def times_shown(frames: Sequence[tuple[float | None, float]]) -> list[float]:
 
 
 def frame_files(folder: Path, kind: str) -> list[Path]:
-    """VTU files that a folder's ``blocks.pvd`` or ``joints.pvd`` lists, in order; none where there is no such file.
+    """VTU files listed in a folder's ``blocks.pvd`` or ``joints.pvd``, in order; none if there is no such list.
 
-    A list that is damaged is a `StoreError`.
+    A damaged list raises a `StoreError`.
     """
     path = folder / f"{kind}.pvd"
     if not path.is_file():

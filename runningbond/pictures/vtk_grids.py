@@ -1,6 +1,6 @@
-"""Blocks and joints of one frame as VTK grids, and back: what is written to files is what a film is drawn from.
+"""Blocks and joints of one frame as VTK grids, and back: films are drawn from the same grids that are written to files.
 
-Names and units are those of docs/paraview.md, and the same in every frame.
+Names and units are those in docs/paraview.md, the same in every frame.
 """
 
 from collections.abc import Mapping
@@ -19,34 +19,34 @@ from .joint_state import joint_states
 from .vtk_safety import import_pyvista
 
 Grid: TypeAlias = Any
-"""A ``pyvista.UnstructuredGrid``; PyVista is only imported where one is made."""
+"""A ``pyvista.UnstructuredGrid``; PyVista is imported only where a grid is made."""
 
 DISPLACEMENT = "displacement [m]"
-"""Array of both grids by whose vectors they are warped."""
+"""Array of both grids with the vectors by which they are warped."""
 
 SECONDS = "time [s]"
-"""Value of both grids of a wall whose ground moves."""
+"""Field of both grids with the time under a ground motion."""
 
-GROUND = 0.15
-"""How far the ground is shown around a wall, in sizes of it."""
+GROUND_MARGIN = 0.15
+"""Distance around a wall up to which the ground is shown, relative to `Scene.size`."""
 
 LINE, TRIANGLE, POLYGON, QUAD = 3, 5, 7, 9
-"""VTK's numbers for kinds of cells."""
+"""VTK's numbers of cell types."""
 
 
 class GridBuilder:
-    """Makes grids of the frames of one wall."""
+    """Builds grids from the frames of one wall."""
 
     def __init__(self, discretisation: Discretisation) -> None:
         self._scene, self._points = discretisation.scene, discretisation.points
         self._triangles = discretisation.triangles
         self._courses, self._templates = course_numbers(self._scene), _templates(self._scene.blocks)
         (left, low), (right, high) = self._scene.blocks.extent(self._scene.wall)
-        air = GROUND * self._scene.size
+        air = GROUND_MARGIN * self._scene.size
         self._around = (left - air, low - air), (right + air, high + air)
 
     def blocks(self, frame: Frame) -> Grid:
-        """Blocks, each a polygon, or in triangles where they deform, with the arrays of ``blocks.pvd``."""
+        """Grid of the blocks, as polygons or, if they deform, as triangles, with the arrays of ``blocks.pvd``."""
         blocks, triangles = self._scene.blocks, self._triangles
         if triangles is None:
             block, owner = np.arange(len(blocks)), blocks.owner
@@ -60,7 +60,7 @@ class GridBuilder:
             points = self._near(triangles.points, owner)
             grid = _grid(points, [(TRIANGLE, triangles.corners.ravel(), np.full(len(block), 3))])
         velocity = carried(blocks, owner, points, frame.velocity)
-        if frame.finite:  # the arms are those of where blocks are
+        if frame.finite:  # lever arms refer to the displaced position
             spin, from_centre = frame.velocity[owner, 2:], displacement - frame.motion[owner, :2]
             velocity += spin * np.column_stack([-from_centre[:, 1], from_centre[:, 0]])
         _add(grid.point_data, {DISPLACEMENT: _in_space(displacement), "velocity [m/s]": _in_space(velocity)})
@@ -72,16 +72,16 @@ class GridBuilder:
         return grid
 
     def _near(self, points: Array, owner: Indices) -> Array:
-        """Points ``(n, 2)`` of blocks ``(n,)``, those of the ground brought near the wall."""
+        """Points ``(n, 2)`` of blocks ``(n,)``, with those of the ground clipped to the surroundings of the wall."""
         return np.where(self._scene.wall[owner][:, None], points, np.clip(points, *self._around))
 
     def joints(self, frame: Frame) -> Grid:
-        """Joints, piece by piece between neighbouring points, with the arrays of ``joints.pvd``.
+        """Grid of the joints in pieces between neighbouring points, with the arrays of ``joints.pvd``.
 
-        Mid-lines come first, then quadrilaterals from side to side.
+        Mid-lines come first, then quadrilaterals between the two sides.
         """
         points, pair = self._points, self._pieces
-        # Points of a piece: its mid-line's two ends, then around it, a's side along the tangent and b's back.
+        # Points of a piece: both ends of its mid-line, then the quadrilateral, along side a and back along side b.
         at = pair[:, [0, 1, 0, 1, 1, 0]].ravel()
         n = len(pair)
         corner = 6 * np.arange(n)[:, None]
@@ -94,10 +94,10 @@ class GridBuilder:
         traction = frame.normal[:, None] * normal + frame.tangential[:, None] * tangent
         if len(frame.traction):
             traction = frame.traction
-        # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
+        # For deformable blocks, the part of the jump that the rigid motions leave is split evenly between the sides.
         a, b = (_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T)
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
-        # What pieces that meet in a point have of its area; on mid-lines alone, or sums would count it three times.
+        # Pieces that meet at a point share its area. Only mid-lines carry it, or sums would count it three times.
         area = (points.area / np.maximum(np.bincount(pair.ravel(), minlength=len(points)), 1))[at]
         area = area * np.tile([1.0, 1.0, 0.0, 0.0, 0.0, 0.0], n)
         _add(
@@ -135,7 +135,7 @@ class GridBuilder:
 
 
 def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
-    """The deformed shape that two grids of a wall hold, its displacements made visible."""
+    """Deformed shape contained in the two grids of a wall, with displacements scaled to be visible."""
     own = scene.wall[blocks.cell_data["block"]]
     count = np.diff(blocks.cell_offsets)
     corner = np.asarray(blocks.cell_connectivity)[np.repeat(own, count)]
@@ -162,7 +162,7 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
 
 
 def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
-    """Motion ``(nb, 3)`` of the supports in a grid of `GridBuilder.blocks`: the scene's, as far as it has come."""
+    """Motion ``(nb, 3)`` of the supports in a grid of `GridBuilder.blocks`: the share reached of the scene's motion."""
     corner, count = np.asarray(blocks.cell_connectivity), np.diff(blocks.cell_offsets)
     block, points = np.repeat(blocks.cell_data["block"], count), np.asarray(blocks.points)[corner, :2]
     whole = carried(scene.blocks, block, points, scene.support_motion)
@@ -171,12 +171,12 @@ def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
 
 
 def _moved(blocks: Blocks, block: Indices, at: Array, frame: Frame) -> Array:
-    """Displacements ``(n, 2)`` [m] of points of rigid blocks."""
+    """Displacements ``(n, 2)`` [m] of points on rigid blocks in a frame."""
     return (turned if frame.finite else carried)(blocks, block, at, frame.motion)
 
 
 def _templates(blocks: Blocks) -> Indices:
-    """The same number for congruent blocks, ``(nb,)``."""
+    """Template number of each block, ``(nb,)``, the same for congruent blocks."""
     shape = np.rint((blocks.vertices - blocks.vertices[blocks.first[:-1]][blocks.owner]) / blocks.tolerance)
     seen: dict[bytes, int] = {}
     pieces = np.split(shape, blocks.first[1:-1])
@@ -184,7 +184,7 @@ def _templates(blocks: Blocks) -> Indices:
 
 
 def _tensors(stress: Array) -> dict[str, Array]:
-    """Stresses ``(n, 3)`` as VTK's symmetric tensors (xx, yy, zz, xy, yz, xz), and the principal ones in the plane."""
+    """Stresses ``(n, 3)`` as VTK's symmetric tensors (xx, yy, zz, xy, yz, xz), and the in-plane principal stresses."""
     x, y, shear = stress.T
     none, middle, radius = np.zeros(len(stress)), (x + y) / 2, np.hypot((x - y) / 2, shear)
     tensor = np.column_stack([x, y, none, shear, none, none])
@@ -196,18 +196,18 @@ def _tensors(stress: Array) -> dict[str, Array]:
 
 
 def _moment(frame: Frame) -> dict[str, ArrayLike]:
-    """The load of a frame and, of a ground that moves, its time."""
+    """Load of a frame and, under a ground motion, its time."""
     moment = {"multiplier": frame.multiplier} | ({} if frame.time is None else {SECONDS: frame.time})
     return {name: [value] for name, value in moment.items()}
 
 
 def _in_space(vectors: Array) -> Array:
-    """Vectors of the plane in space."""
+    """Extend vectors of the plane to three components."""
     return np.column_stack([vectors, np.zeros(len(vectors))])
 
 
 def _grid(points: Array, cells: list[tuple[int, Indices, Indices]]) -> Grid:
-    """Grid of points ``(n, 2)`` and cells: their kind, their points in a row, and the number of points of each."""
+    """Grid of points ``(n, 2)`` and cells, given by type, concatenated point indices, and points per cell."""
     pv = import_pyvista("UnstructuredGrid")
     kinds, corners, counts = zip(*cells, strict=True)
     count = np.concatenate(counts)
@@ -218,7 +218,7 @@ def _grid(points: Array, cells: list[tuple[int, Indices, Indices]]) -> Grid:
 
 
 def _add(data: Any, arrays: Mapping[str, ArrayLike]) -> None:
-    """Add named arrays to a grid's data; whole numbers take four bytes."""
+    """Add named arrays to a grid's data; integers are stored in four bytes."""
     for name, values in arrays.items():
         array = np.asarray(values)
         data[name] = array.astype(np.int32) if array.dtype == np.int64 else array

@@ -1,4 +1,4 @@
-"""VTK made safe: no signal interrupts its imports, which would crash the process, and its errors are raised."""
+"""Safe use of VTK: signals cannot interrupt its imports, which would crash the process, and its errors are raised."""
 
 import signal
 import threading
@@ -9,8 +9,8 @@ from typing import Any
 
 @contextmanager
 def uninterrupted_imports() -> Iterator[None]:
-    """Hold back Ctrl-C, and what else raises an exception at a signal, until what is imported inside is there."""
-    if threading.current_thread() is not threading.main_thread():  # where no signal arrives
+    """Defer Ctrl-C and SIGTERM, whose handlers may raise exceptions, until the imports inside are complete."""
+    if threading.current_thread() is not threading.main_thread():  # signals arrive only in that thread
         yield
         return
     received: list[int] = []
@@ -28,23 +28,23 @@ def uninterrupted_imports() -> Iterator[None]:
 
 
 def import_pyvista(*names: str) -> Any:
-    """Import PyVista with what is needed of it, such as its ``Plotter``, and return it."""
+    """Import PyVista and the given names in it, such as ``Plotter``, and return PyVista."""
     with uninterrupted_imports():
         import pyvista
         import vtkmodules.vtkIOXML  # noqa: F401
 
-        for name in names:  # imported by PyVista when they are first asked for
+        for name in names:  # PyVista imports these at first access
             getattr(pyvista, name)
     return pyvista
 
 
 class VtkError(Exception):
-    """VTK reported an error; the message is its own."""
+    """VTK reported an error; the message is VTK's own."""
 
 
 @contextmanager
 def vtk_errors_raised() -> Iterator[None]:
-    """Raise the first error that VTK reports inside, once it has been left; warnings pass."""
+    """Raise the first error that VTK reports inside the context at its end; warnings are ignored."""
     with uninterrupted_imports():
         from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 

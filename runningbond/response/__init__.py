@@ -1,4 +1,4 @@
-"""Response of walls to motions of their ground."""
+"""Response of walls to ground motion."""
 
 from .critical import critical_scale
 from .follow import follow

@@ -1,8 +1,9 @@
-"""The critical scale of a record: the smallest λ tried that brings a wall down, and the largest below it that does not.
+"""Critical scale of a record: the smallest λ tried at which a wall falls, and the largest below it at which it stands.
 
-Scales are tried upwards in steps of `RATIO` until the wall falls, and the last step is bisected. What falls at one
-scale may stand at a larger one: rocking blocks overturn in more than one way (Zhang & Makris 2001). So scales go on in
-the same steps to `BEYOND` times the first fall, and each window in which the wall stands again is told of.
+Scales are increased by the factor `RATIO` until the wall falls, and the last interval is bisected. A wall that falls at
+one scale may stand at a larger one: rocking blocks overturn in more than one way (Zhang & Makris 2001). The search
+therefore continues with the same factor to `BEYOND` times the first fall, and reports each window of scales in which
+the wall stands again.
 """
 
 import math
@@ -26,13 +27,13 @@ from .response import MISSED, Response
 from .resting import Resting
 
 START, LARGEST_SCALE = 0.05, 50.0
-"""Peak acceleration of the ground, in g, at the first scale that is tried, and beyond which no fall is looked for."""
+"""Peak ground acceleration, in g, at the first scale tried, and above which the search for a fall ends."""
 
 RATIO, BEYOND = 1.25, 2.0
-"""From scale to scale; and how far beyond the first fall windows are looked for."""
+"""Factor between successive scales, and factor beyond the first fall up to which windows are searched for."""
 
 ROWS = 50
-"""Rows of a response in a second, of a search."""
+"""Rows per second of a response during a search."""
 
 
 @dataclass(eq=False)
@@ -50,11 +51,11 @@ class ScaleSearch:
 
     @property
     def in_order(self) -> list[Response]:
-        """Responses by their scales, ascending."""
+        """Responses in ascending order of their scales."""
         return [self.tried[scale] for scale in sorted(self.tried)]
 
     def windows(self) -> list[tuple[float, float]]:
-        """Scales above the first fall between which the wall was seen to stand."""
+        """Ranges of scales above the first fall in which the wall was found to stand."""
         found: list[list[float]] = []
         fallen = inside = False
         for response in self.in_order:
@@ -68,27 +69,27 @@ class ScaleSearch:
 def critical_scale(
     scene: Scene, model: str, system: BlockSystem, tolerance: float, *, note: str = "", observe: Observer = no_observer
 ) -> Outcome:
-    """Find the smallest multiple of a record that brings a wall down.
+    """Find the smallest multiple of a record at which a wall falls.
 
     Parameters
     ----------
     scene, model
-        The wall, with a motion of its ground, and the name of the model.
+        The wall, with a ground motion, and the name of the model.
     system
         Its blocks at finite displacements.
     tolerance
         Relative width of the bracket.
     note
-        What the message is to say besides.
+        Text to add to the message.
     observe
-        As of `follow`, of every run; who observes is shown the fall, at the upper scale, once more at the end.
+        As in `follow`, for every run; at the end the fall at the upper scale is run once more for the observer.
 
     Returns
     -------
     Outcome
-        `motion` is that of `Response.shape` in the fall, the farthest corner moved by one metre; `curve` has the
-        largest displacement of the upper corners, and λ, of every scale tried; `path` whether the wall stood there, and
-        its drift in the end.
+        `motion` is `Response.shape` of the fall, scaled so that the fastest corner moves by one metre. For every scale
+        tried, `curve` holds the largest displacement of the upper corners and λ, and `path` holds whether the wall
+        stood and its residual drift.
     """
     start, rest = time.perf_counter(), Resting.of(scene, model, system)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
@@ -111,9 +112,9 @@ def critical_scale(
 
 
 def _bracket(search: ScaleSearch, first: float, most: float, tolerance: float) -> None:
-    """Try scales up to the first fall, bisect it, and go on beyond it."""
+    """Increase the scale up to the first fall and beyond it, and bisect the bracket of the first fall."""
 
-    def scale(number: int) -> float:  # from the first one each time, or what was tried would be tried again
+    def scale(number: int) -> float:  # always from `first`: rounding would repeat scales
         return first * RATIO**number
 
     number = 0

@@ -1,10 +1,10 @@
-"""A wall followed through a motion of its ground: the record, then free motion until it rests or has fallen.
+"""Simulation of a wall through a ground motion: the record, then free motion until the wall rests or has fallen.
 
-A block has fallen once it is lower by half its smaller side, or turned by more than `TURNED`, than under its weight.
-A wall of which more energy is missing than its loads have supplied is not followed on, and has no verdict.
-The wall stands once no more kinetic energy is in it, for as long as it takes to rock to and fro, than would lift it by
-`RISE` of a block, none is gathered any more, and it stays where it is (`STILL`). One that gathers energy to the end
-slides away: it collapses as well.
+A block has fallen once it is lower than at rest under its weight by half its size (`Scene.block_sizes`), or has rotated
+by more than `TURNED`. If the energy ledger misses more than the loads have supplied, the run stops, undecided unless a
+block has fallen. A wall stands once, for the duration of a rocking swing, its kinetic energy is less than would lift it
+by `RISE` of a block and does not increase, and no point moves by more than `STILL`. A wall whose energy increases to
+the end slides away, which also counts as collapse.
 """
 
 import math
@@ -26,55 +26,57 @@ from .response import ENERGIES, MISSED, Response, ResponseVerdict, supplied, una
 from .resting import Resting
 
 TURNED = math.radians(60)
-"""Rotation of a block that has fallen [rad]."""
+"""Rotation beyond which a block has fallen [rad]."""
 
 RISE = 1e-4
-"""Height, in sizes of a block, to which the kinetic energy of a wall that stands would lift it."""
+"""Height, in block sizes, to which the kinetic energy of a wall that stands could at most lift it."""
 
 STILL = 0.02
-"""Farthest that a point of a wall that stands comes meanwhile, in sizes of a block: one near its balance may turn round
-so slowly that it has hardly any energy, and fall."""
+"""Largest range, in block sizes, in which a point of a wall that stands may move: a block near unstable equilibrium may
+turn round so slowly that it has almost no kinetic energy, and still fall."""
 
-ELSEWHERE = 4
-"""Swings for which a wall must be calm that is farther than `STILL` from where it stood; of others one is enough.
+DISPLACED_SWINGS = 4
+"""Number of swings for which a wall must be calm if it is farther than `STILL` from where it stood; otherwise one.
 
-A block near its balance may be calm for one. In each its distance from that grows, where it is slender, by e^√6.
+A block near unstable equilibrium may be calm for one swing. In each swing the distance of a slender block from that
+equilibrium grows by the factor e^√6.
 """
 
 ROWS = 200
-"""Rows of a response in a second, and in a record that is shorter, one a time step at most; `follow` may be asked for
-fewer."""
+"""Rows of a response per second, and per record if that is shorter, at most one per time step; `follow` accepts other
+numbers."""
 
 PART = 0.9
-"""Time step, in stable ones: an impact makes up or loses energy by its square."""
+"""Time step relative to the stable one: an impact gains or loses energy with the square of the step."""
 
 SHAPE = 0.1
-"""Largest displacement of a corner, in sizes of the wall, at the moment whose shape a response keeps."""
+"""Largest corner displacement, relative to the size of the wall, at the moment whose shape a response keeps."""
 
 AFTER = 0.5
-"""Time [s] for which a wall that falls is filmed."""
+"""Time [s] for which a wall that falls is recorded after its first block has fallen."""
 
-GATHERS = 1e-3
-"""Part of the energy that still counts as calm from which on what gains any does not rest: it slides ever faster."""
+GROWTH_FLOOR = 1e-3
+"""Kinetic energy, relative to the level that counts as calm, above which a wall whose energy increases is not at
+rest."""
 
-PARTS, FASTER = 4, 1.1
-"""Parts of the time after which a wall would be left undecided, and by how much it has more energy in each than before
-if it slides away: under a force that stays on by a third to a half."""
+PARTS, GROWTH = 4, 1.1
+"""Number of parts of the last observed time, and ratio of kinetic energy from part to part above which a wall slides
+away instead of being undecided: under a constant force the energy increases by a third to a half."""
 
 PATIENCE, AT_MOST = 30, 120
-"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided, and until one
-is that rocks on by ever less, which is followed by half of the first ones at a time.
+"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided, and the
+maximum for a wall that rocks with decreasing energy, whose time is extended by half of the first number at a time.
 
-One that only sways stands: in the last quarter of them it stays within where it was in the quarter before, and what it
-loses meanwhile goes into viscosity and not into joints that slide, crack or are crushed.
+A wall that only sways stands: in the last quarter of the first number its drift stays within the range of the quarter
+before, and the energy it loses there goes into viscous damping, not into sliding, cracking or crushing of joints.
 """
 
-SPENT = 0.01
-"""Share of what a wall that sways loses by viscosity which its joints may take."""
+JOINT_SHARE = 0.01
+"""Largest energy that joints dissipate in a wall that only sways, relative to its viscous dissipation."""
 
 
 class _Row(NamedTuple):
-    """What was seen at one time: a row of a `Response`, whose `places` are displacements of its points."""
+    """Values observed at one time: a row of a `Response`, with `places` the displacements of its points."""
 
     time: float
     ground: Array
@@ -86,12 +88,12 @@ class _Row(NamedTuple):
 
     @property
     def kinetic(self) -> float:
-        """Energy that was in motion [J]."""
+        """Kinetic energy [J]."""
         return float(self.energy[ENERGIES.index("kinetic")])
 
 
 class _Log:
-    """Rows of a response as they come, and the blocks that have fallen."""
+    """Rows of a response as they are recorded, and the blocks that have fallen."""
 
     def __init__(self, rest: Resting, ground: Ground, state: State, points: Array) -> None:
         system = ground.run.system
@@ -102,7 +104,7 @@ class _Log:
         self._size, self._movable = rest.scene.block_sizes[system.owner], ~rest.scene.fixed[system.owner]
         low, high = rest.scene.blocks.boxes
         smaller = float(np.median((high - low).min(axis=1)[~rest.scene.fixed]))
-        size = min(rest.scene.block_size, smaller)  # a slender block falls over its width
+        size = min(rest.scene.block_size, smaller)  # a slender block overturns across its width
         self._still, self.calm = STILL * size, RISE * rest.gravity * float(ground.inertia[0].sum()) * size
         self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
@@ -135,41 +137,41 @@ class _Log:
 
     @property
     def is_lost(self) -> bool:
-        """Whether more energy is missing, by more than rest has, than works have gone through."""
+        """Whether the missing energy exceeds the work of the loads plus the energy that a wall at rest may have."""
         energy = self.rows[-1].energy
         return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self.calm
 
     def is_calm(self, since: float) -> bool:
-        """Whether hardly any energy was in motion from a time on [s], no more of it later, and nothing came far."""
+        """Whether since a time [s] there was almost no kinetic energy, it did not increase, and no point moved far."""
         rows = self._since(since)
         energy = np.array([row.kinetic for row in rows])
         before, late = energy[: len(energy) // 2].max(initial=0.0), energy[len(energy) // 2 :].max(initial=0.0)
-        if max(before, late) > self.calm or late > max(before, GATHERS * self.calm):
+        if max(before, late) > self.calm or late > max(before, GROWTH_FLOOR * self.calm):
             return False
         return bool(np.ptp([row.places for row in rows], axis=0).max() <= self._still)
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether a point is not where it was before the ground moved."""
+        """Whether a point is away from its position before the ground motion."""
         return bool(np.hypot(*self.rows[-1].places.T).max() > self._still)
 
     def swaying(self, since: float) -> Array | None:
-        """Least and largest drift ``(2,)`` of late of a wall that from a time on [s] has only swayed, and ever less."""
+        """Recent range of drift ``(2,)`` if since a time [s] the wall has only swayed, with decreasing amplitude."""
         rows = self._since(since)
         drift, energy = np.array([row.drift for row in rows]), np.array([row.energy for row in rows])
         before, late = drift[: len(rows) // 2], drift[len(rows) // 2 :]
         spent, damped = energy[-1, 4:] - energy[0, 4:]
         within = before.min() < late.min() <= late.max() < before.max()
-        return np.array([late.min(), late.max()]) if within and spent <= SPENT * damped else None
+        return np.array([late.min(), late.max()]) if within and spent <= JOINT_SHARE * damped else None
 
     def runs_away(self, since: float) -> bool:
-        """Whether a wall has gathered energy ever since a time [s], as one that slides under a load that stays on."""
+        """Whether kinetic energy has grown steadily since a time [s], as in sliding under a constant load."""
         energy = np.array([row.kinetic for row in self._since(since)])
         parts = [float(part.mean()) for part in np.array_split(energy, PARTS)]
-        return all(later > FASTER * before for before, later in pairwise(parts)) and parts[0] > GATHERS * self.calm
+        return all(later > GROWTH * before for before, later in pairwise(parts)) and parts[0] > GROWTH_FLOOR * self.calm
 
     def dies_away(self, since: float) -> bool:
-        """Whether there was less energy in motion in the later half of the time since then [s] than in the other."""
+        """Whether the mean kinetic energy since a time [s] was lower in the second half than in the first."""
         before, late = np.array_split([row.kinetic for row in self._since(since)], 2)
         return bool(late.mean() < before.mean())
 
@@ -194,10 +196,10 @@ def follow(
     rows: int = ROWS,
     observe: Observer = no_observer,
 ) -> Response:
-    """Follow a wall through the motion of its ground.
+    """Simulate a wall through its ground motion.
 
-    A motion whose ledger misses more than `MISSED` is gone through again at half the step, which misses a quarter to a
-    half, and at a quarter.
+    If the energy ledger misses more than `MISSED`, the run is repeated at half the time step, which misses a quarter to
+    a half as much, and then at a quarter.
 
     Parameters
     ----------
@@ -206,19 +208,19 @@ def follow(
     scale
         Factor on the record, λ.
     after
-        Time for which it is followed once a block has fallen [s].
+        Time for which the run continues once a block has fallen [s].
     points : (k, 2) float, optional
-        Points to follow [m], on the blocks that hold them, or have the nearest corners, and within a block's size of
-        the wall; without any the wall's upper corners.
+        Points to follow [m], on the block that contains each of them or has the nearest corner, and within a block's
+        size of the wall; by default the wall's upper corners.
     rows
-        Rows in a second, and at least in the record.
+        Rows per second, and at least per record.
     observe
-        Called with the run, its state and λ at the beginning and at every row, of each motion.
+        Called with the run, its state and λ at the beginning and at every row, for each run.
 
     Returns
     -------
     Response
-        Without a row for a wall that does not rest under its dead load, ``infeasible`` or ``undecided``.
+        Without rows if the wall does not come to rest under its dead load: ``infeasible`` or ``undecided``.
     """
     places = rest.top if points is None else _places(rest, points)
     if rest.trouble:
@@ -233,7 +235,7 @@ def follow(
 
 
 def _places(rest: Resting, points: Array) -> Array:
-    """Points to follow, ``(k, 2)``: drifts are shares of their heights above the ground."""
+    """Points to follow, ``(k, 2)``, above the ground because drifts are relative to their heights."""
     try:
         places = np.array(points, dtype=float)
     except (TypeError, ValueError):
@@ -271,13 +273,13 @@ def _followed(
             observe(run, state, scale)
             now = ground.time(state)
             if log.is_lost:
-                verdict = "collapse" if fell <= now else "undecided"  # debris alters nothing of an answer
+                verdict = "collapse" if fell <= now else "undecided"  # energy errors of debris do not matter
                 break
             if log.first:
                 fell = min(fell, now)
                 verdict = "collapse" if now >= fell + after else "undecided"
             else:
-                calm = now - swing * (ELSEWHERE if log.is_elsewhere else 1)
+                calm = now - swing * (DISPLACED_SWINGS if log.is_elsewhere else 1)
                 verdict = "stands" if calm >= history.duration and log.is_calm(calm) else "undecided"
             if now >= end and verdict == "undecided" and not log.first:
                 of_late = now - PATIENCE / 2 * swing
@@ -292,7 +294,7 @@ def _followed(
 
 
 def _not_shaken(rest: Resting, scale: float, points: Array, verdict: ResponseVerdict, message: str) -> Response:
-    """The response of a wall that does not rest."""
+    """Response of a wall that does not come to rest under its dead load."""
     none, nowhere = np.zeros((0, 2)), np.zeros((len(rest.scene.blocks), 3))
     return Response(
         *(rest.scene.title, rest.model, scale, verdict, message, points),
@@ -325,13 +327,13 @@ def _response(
         "stands": f"stands, {left}",
         "collapse": f"falls: {names} at {fell:.3g} s{order}{place}"
         if first
-        else f"slides ever faster until {times[-1]:.3g} s",
+        else f"slides faster and faster until {times[-1]:.3g} s",
         "undecided": f"{undecided} {times[-1]:.3g} s",
     }[verdict]
     lost = unaccounted(until_fallen(energy, fallen), log.calm)
     close = f"energy accounted for to {max(lost, 1e-6):.0e}"
     if not lost <= MISSED:
-        close = f"{lost:.1%} of the energy supplied is unaccounted for: beyond {MISSED:.0%} this is not to be relied on"
+        close = f"{lost:.1%} of the energy supplied is unaccounted for: beyond {MISSED:.0%} the result is not reliable"
     return Response(
         scene=rest.scene.title,
         model=rest.model,
@@ -356,7 +358,7 @@ def _response(
 
 
 def _is_past_the_ground(scene: Scene, motion: Array, block: int) -> bool:
-    """Whether a block has slid farther than there is ground, of which only so much is modelled."""
+    """Whether a block has slid beyond the end of the ground, of which only a limited length is modelled."""
     ground = scene.fixed & ~scene.wall
     if not ground.any():
         return False

@@ -1,7 +1,7 @@
-"""Motion of the ground as a run sees it: in the ground's frame every mass m bears −m a.
+"""Ground motion applied to a run: in the ground's frame every mass m carries the inertia force −m a.
 
-The load of each few time steps is the mean over them, taken from the ground's velocity: whatever steps are taken, the
-wall has been given the velocity that the record has there, to rounding.
+The load is constant over a few time steps at once, with the mean acceleration derived from the ground's velocity.
+Whatever time steps are used, the wall therefore receives the velocity of the record at that time, to rounding.
 """
 
 import numpy as np
@@ -10,11 +10,11 @@ from runningbond.dynamics import Run, State
 from runningbond.scene import Array, History
 
 LONGEST = 5e-4
-"""Longest time [s] over which the ground's acceleration stands for its mean, however far apart the samples are."""
+"""Longest interval [s] over which the mean replaces the ground's acceleration, however far apart the samples are."""
 
 
 class Ground:
-    """The ground under a run, from the time of a state on.
+    """Ground motion applied to a run, starting at the time of a state.
 
     Parameters
     ----------
@@ -23,13 +23,13 @@ class Ground:
     history, scale
         The record, and the factor on it.
     start
-        Time of the state from which the record counts [s].
+        Time of the state at which the record begins [s].
     """
 
     def __init__(self, run: Run, history: History, scale: float, start: float) -> None:
         self.run, self.history, self.scale, self.start = run, history, scale, start
-        self.velocity = np.zeros(2)  # that the wall has been given so far [m/s]
-        self.load = run.system.dead  # (nd,) that is on [N]
+        self.velocity = np.zeros(2)  # ground velocity that has been applied so far [m/s]
+        self.load = run.system.dead  # (nd,) current load [N]
         self.inertia = run.system.mass_along
 
     def time(self, state: State) -> float:
@@ -41,25 +41,25 @@ class Ground:
         return self.scale * self.history.acceleration(time)
 
     def bring(self, state: State, until: float) -> None:
-        """Bring a state forward to a time of the record [s], to within half a time step."""
+        """Integrate a state in time to a time of the record [s], within half a time step."""
         run, history = self.run, self.history
         while (left := until - (now := self.time(state))) > run.dt / 2:
-            # To the end of an interval of the record, at whatever times a state is asked for within it.
+            # Average over whole intervals of the record, whatever output times lie within them.
             whole = min(left, self._span(now)) if now >= history.duration else self._span(now)
             steps = max(1, round(whole / run.dt))
             aim = self.scale * history.velocity(now + steps * run.dt)
             acceleration = (aim - self.velocity) / (steps * run.dt)
             steps = max(1, min(steps, round(left / run.dt)))
             load, before = run.system.dead - acceleration @ self.inertia, state.time
-            # Half of the step that ends where the load changes is under either.
+            # The time step at which the load changes is half under the old load and half under the new one.
             state.external += 0.5 * run.dt * float((load - self.load) @ state.velocity)
             self.load = load
             run.bear(state, load, steps)
-            # New contacts may have changed the step; what is missing is made up for in the next ones.
+            # New contacts may have changed the time step; the next intervals correct the difference in velocity.
             self.velocity += acceleration * (state.time - before)
 
     def _span(self, now: float) -> float:
-        """Time [s] from now on over which the ground's acceleration may stand for its mean: a step where it jumps."""
+        """Time [s] from `now` on over which the ground's acceleration may be averaged: one time step where it jumps."""
         step, to_the_end = self.run.dt, self.history.duration - now
         if self.history.has_jumps and min(now, abs(to_the_end)) <= step / 2:
             return step
@@ -70,9 +70,9 @@ class Ground:
         return float(min(to_the_next if to_the_next > step / 2 else interval, to_the_end))
 
     def momentum(self, state: State) -> Array:
-        """Momentum of the wall in space ``(2,)`` [kg m/s]."""
+        """Momentum of the wall in the fixed frame ``(2,)`` [kg m/s]."""
         return np.asarray(self.inertia @ state.velocity + self.inertia.sum(axis=1) * self.velocity)
 
     def dead(self) -> Array:
-        """Resultant of the dead load on what moves ``(2,)`` [N]."""
+        """Resultant of the dead load on the moving bodies ``(2,)`` [N]."""
         return np.asarray((self.inertia > 0) @ np.nan_to_num(self.run.system.dead))

@@ -1,4 +1,4 @@
-"""What a wall does when its ground moves: time series, blocks that fell, and a verdict."""
+"""Response of a wall to ground motion: time series, fallen blocks, and a verdict."""
 
 import math
 from dataclasses import dataclass
@@ -9,29 +9,29 @@ import numpy as np
 from runningbond.scene import Array, Indices
 
 ResponseVerdict: TypeAlias = Literal["stands", "collapse", "undecided", "infeasible"]
-"""Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed; or whether
-it falls under its dead load, so that there is nothing to shake."""
+"""Whether the wall has come to rest, a block has fallen or the wall slides away, or neither within the simulated time;
+``infeasible`` if the wall already falls under its dead load, before any ground motion."""
 
 ENERGIES = ("input", "weight", "kinetic", "stored", "friction", "damped")
-"""Works of the ground's motion, in its frame, and of the dead load; energies; what is spent on friction and crushing
-or cracking, and on impacts and damping [J]."""
+"""Work of the ground motion, in the ground's frame, and of the dead load; kinetic and stored energy; energy dissipated
+by friction, crushing and cracking, and by impacts and damping [J]."""
 
 MISSED = 0.01
-"""Share of the energy supplied that the ledger may miss before a run is not believed."""
+"""Share of the energy supplied that the ledger may miss; above it a run is not reliable."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response:
-    """Response of a wall to a motion of its ground, in the frame of the ground.
+    """Response of a wall to a ground motion, in the frame of the ground.
 
     Parameters
     ----------
     scene, model, scale
         Title of the scene, name of the model, and the factor on the record, λ.
     verdict
-        What became of the wall.
+        Verdict on the wall.
     message
-        That in a line.
+        The verdict in one line.
     points : (k, 2) float
         Points of the undeformed wall that are followed [m].
     time : (n,) float
@@ -39,23 +39,23 @@ class Response:
     ground : (n, 2) float
         Acceleration of the ground [m/s²].
     displacement : (n, k, 2) float
-        Of the points since the wall was at rest [m].
+        Displacement of the points since the wall was at rest [m].
     drift : (n,) float
         Mean horizontal displacement of the points over their mean height above the base.
     reaction : (n, 2) float
-        Mean of the force of the ground on the wall since the last row [N]: base shear, and pressure.
+        Mean force of the ground on the wall since the previous row [N]: base shear, and vertical force.
     energy : (n, 6) float
         `ENERGIES` since the wall was at rest [J].
     fallen : (n,) int
-        Blocks that have fallen.
+        Number of blocks that have fallen.
     first : (m,) int
-        Blocks that had fallen by the end, the first ones first.
+        Blocks that had fallen by the end, in the order of falling.
     motion, shape : (nb, 3) float
         Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
-        the last moment at which no corner had gone farther than a tenth of the wall's size.
+        the last moment at which no corner had moved farther than a tenth of the wall's size.
     unaccounted
-        Largest share of the energy supplied that the ledger misses, until a block has fallen; of that which a wall at
-        rest may have, where no more is supplied.
+        Largest share of the energy supplied that the ledger misses, until a block has fallen; if less is supplied,
+        relative to the energy that a wall at rest may have.
     steps
         Time steps taken.
     seconds
@@ -84,26 +84,26 @@ class Response:
 
     @property
     def residual(self) -> Array:
-        """Energy that the ledger misses ``(n,)`` [J]."""
+        """Energy missing in the ledger ``(n,)`` [J]."""
         return np.asarray(supplied(self.energy) - self.energy[:, 2:].sum(axis=1))
 
     @property
     def residual_drift(self) -> float:
-        """Drift at the end; not a number, as the next, of a wall that was not shaken."""
+        """Drift at the end; not a number, like `peak_drift`, if the wall was not shaken."""
         return float(self.drift[-1]) if len(self.drift) else math.nan
 
     @property
     def peak_drift(self) -> float:
-        """Largest drift, by its size, until a block has fallen: for how long it is followed then is no matter."""
+        """Largest absolute drift until a block has fallen, which does not depend on how long the run continues."""
         return float(np.abs(until_fallen(self.drift, self.fallen)).max()) if len(self.drift) else math.nan
 
     @property
     def line(self) -> str:
-        """The message, after its verdict where that is not in it."""
+        """The message, with the verdict in front if the message does not include it."""
         return f"infeasible: {self.message}" if self.verdict == "infeasible" else self.message
 
     def summary(self) -> dict[str, Any]:
-        """The scalars; None is what there is not."""
+        """Scalar results by name; None where there is no value."""
         names = ("scene", "model", "verdict", "scale", "peak_drift", "residual_drift", "unaccounted")
         fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1]) if len(self.time) else math.nan}
         last = {name: getattr(self, name) for name in ("steps", "seconds", "message")}
@@ -111,7 +111,7 @@ class Response:
         return {name: None if isinstance(x, float) and math.isnan(x) else x for name, x in found.items()}
 
     def columns(self) -> dict[str, Array]:
-        """The time series column by column, with units."""
+        """Time series by column, with units."""
         moved = {
             f"point {k + 1} {axis} [m]": self.displacement[:, k, number]
             for k in range(len(self.points))
@@ -135,20 +135,20 @@ class Response:
 
 
 def until_fallen(rows: Array, fallen: Indices) -> Array:
-    """Rows ``(n, …)`` up to the first in which a block has fallen."""
+    """Rows ``(n, …)`` up to the first one in which a block has fallen."""
     return rows[: int(np.argmax(fallen > 0)) + 1] if fallen.any() else rows
 
 
 def supplied(energy: Array) -> Array:
-    """Energy that the loads have supplied, ``(n,)`` [J]."""
+    """Energy supplied by the loads, ``(n,)`` [J]."""
     return np.asarray(energy[:, 0] + energy[:, 1])
 
 
 def unaccounted(energy: Array, least: float) -> float:
-    """Largest share of the energy supplied at any time, or of a least one [J], that the ledger misses.
+    """Largest energy that the ledger misses at any time, relative to the energy supplied, at least to `least` [J].
 
-    Works of the ground and of the weight each count, by how far they have gone: on the way through its middle a wall
-    that rocks has been supplied with next to nothing in sum.
+    The works of the ground and of the weight count separately, each by its range: when a rocking wall passes through
+    its upright position, their sum is almost zero.
     """
     missing = np.abs(supplied(energy) - energy[:, 2:].sum(axis=1))
     gone = max(float(np.ptp(energy[:, :2], axis=0).sum()), least)

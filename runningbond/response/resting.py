@@ -1,4 +1,4 @@
-"""A wall at rest under its weight, ready to be shaken any number of times."""
+"""A wall at rest under its weight, from which any number of ground motions can start."""
 
 import math
 from dataclasses import dataclass, replace
@@ -21,7 +21,8 @@ from runningbond.limit import bears_dead_load
 from runningbond.scene import Array, History, Lateral, Scene, SceneError
 
 VISCOUS = 1.0
-"""Damping ratio of joints at the highest frequency: corners that strike do not bounce, and lose what Housner's lose."""
+"""Damping ratio of joints at the highest frequency: impacting corners do not bounce, and lose energy as in Housner's
+model."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,13 +32,13 @@ class Resting:
     Parameters
     ----------
     scene, model
-        The wall, with a motion of its ground, and the name of the model.
+        The wall, with a ground motion, and the name of the model.
     system
         Its blocks at finite displacements.
     state, verdict
-        Where it is, and ``stable`` where it does rest there.
+        Its state, and ``stable`` if it is at rest there.
     viscous
-        Damping ratio of its joints in motion.
+        Damping ratio of its joints during the ground motion.
     """
 
     scene: Scene
@@ -57,7 +58,7 @@ class Resting:
 
     @property
     def trouble(self) -> tuple[Literal["infeasible", "undecided"], str] | None:
-        """What is to be said of a wall that does not rest, and so cannot be shaken."""
+        """Status and message if the wall does not come to rest, and so cannot be shaken; else None."""
         if self.verdict == "collapse":
             return fall_under_dead_load(self.system.interface.law, self._bears_dead_load)
         if self.verdict == "undecided":
@@ -65,12 +66,12 @@ class Resting:
         return None
 
     def _bears_dead_load(self) -> bool:
-        pushed = replace(self.scene.load, live=(Lateral(),))  # for limit analysis knows no ground that moves
+        pushed = replace(self.scene.load, live=(Lateral(),))  # limit analysis does not include ground motion
         return bears_dead_load(replace(self.scene, load=pushed))
 
     @property
     def history(self) -> History:
-        """The motion of its ground; a scene without is refused."""
+        """Ground motion of the scene; a scene without one is refused."""
         if self.scene.history is None:
             raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
         return self.scene.history
@@ -88,7 +89,7 @@ class Resting:
 
     @property
     def swing(self) -> float:
-        """Time [s] in which a wall that rocks comes through its middle, unless it hardly moves."""
+        """Time [s] within which a rocking wall passes through its upright position, unless it barely moves."""
         return 2 * math.sqrt(self.height / (self.gravity or 1.0))
 
     @property
@@ -100,7 +101,7 @@ class Resting:
         return np.asarray(highest[[highest[:, 0].argmin(), highest[:, 0].argmax()]])
 
     def block_at(self, point: Array) -> int:
-        """Block of the wall that holds a point ``(2,)`` [m]; of several, or none, that with the nearest corner."""
+        """Block of the wall that contains a point ``(2,)`` [m]; if several or none do, that with the nearest corner."""
         blocks, can_move = self.scene.blocks, ~self.scene.fixed
         holding = blocks.containing(point)
         if can_move[holding].any():

@@ -1,13 +1,13 @@
-"""Natural vibrations of a wall about its rest: joints that are closed are springs, those that are open are none.
+"""Natural vibrations of a wall about its state at rest: closed joints act as springs, open joints have no stiffness.
 
-With closed points of opening rows b_n, slip rows b_t and areas w, and ties of elongation rows g that neither hang
-slack nor yield,
+With closed points of opening rows b_n, slip rows b_t and areas w, and ties of elongation rows g that are neither slack
+nor yielding,
 
     K = diag(k) + B_nᵀ diag(w k_n) B_n + B_tᵀ diag(w k_t) B_t + Gᵀ diag(E A / L) G,    K φ = ω² M φ.
 
-Of a joint that closes the more it is pressed, k_n is the tangent under its pressure at rest; of one that has softened
-and stands open, the secant along which it unloads.
-The weight closes the joints; of what it does besides, the moment of a block that leans, nothing is in K.
+For a joint that stiffens with pressure, k_n is the tangent at its pressure at rest; for a softened joint that is open,
+k_n is the secant of unloading. The weight closes the joints; its other effect, the moment of a leaning block, is not
+included in K.
 """
 
 from contextlib import suppress
@@ -26,18 +26,19 @@ from runningbond.scene import Array, Scene, SceneError
 from runningbond.scene.ranges import check_whole_number
 
 DENSE = 200
-"""Freedoms up to which all modes are computed at once."""
+"""Degrees of freedom up to which all modes are computed at once."""
 
 PRESSED = 1e-6
-"""Pressure of a joint that is closed, in the largest ones; what touches without bearing has some by rounding."""
+"""Pressure, relative to the largest, above which a joint is closed; joints in contact without load have some by
+rounding."""
 
 LOOSE = 1e-6
-"""ω of a motion that no closed joint holds, in largest ones."""
+"""ω, relative to the largest, below which a motion is not held by any closed joint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Vibration:
-    """Natural vibrations, the slowest first.
+    """Natural vibrations in ascending order of frequency.
 
     Parameters
     ----------
@@ -46,9 +47,9 @@ class Vibration:
     shape : (n, nb, 3) float
         Translation of each block's centroid and its rotation [m, m, rad], for a modal mass of 1 kg.
     share : (n, 2) float
-        Share of the moving mass that goes along in a motion of the ground, horizontally and vertically.
+        Effective modal mass as a share of the moving mass, for horizontal and vertical ground motion.
     loose
-        How many motions no closed joint holds; they are left out.
+        Number of motions that no closed joint holds; they are left out.
     """
 
     frequency: Array
@@ -63,7 +64,7 @@ def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
     Raises
     ------
     SceneError
-        For a wall that does not come to rest, or is not pressed together; for a number of vibrations that is none.
+        If the wall does not come to rest or is not under compression, or if `count` is not a valid number.
     """
     check_whole_number("count", count)
     loaded = put_on_dead_load(run, Criteria(collapse=U_CRIT * scene.block_sizes[run.system.owner]))
@@ -73,7 +74,7 @@ def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
 
 
 def _with_true_beam(scene: Scene, system: BlockSystem) -> BlockSystem:
-    """A system whose beam has the mass with which it vibrates."""
+    """The system with the mass of the beam that applies in vibrations (`Scene.density_in_motion`)."""
     mass, density = system.mass.copy(), scene.density_in_motion / scene.inertial_density
     mass[system.rigid] *= density[system.owner][:, None]
     return replace(system, mass=mass)
@@ -109,10 +110,11 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
 
 
 def _slowest(scaled: csr_array, count: int, least: float) -> tuple[Array, Array, int]:
-    """The `count` slowest eigenvalues of a symmetric matrix that are above the `least`, ascending.
+    """The `count` smallest eigenvalues of a symmetric matrix above `least`, ascending.
 
-    Beside them are their eigenvectors, and how many are not above. What hangs together is solved by itself: Lanczos'
-    method finds one of several equal eigenvalues, which equal stacks have, and loose blocks.
+    Also returns their eigenvectors, and the number of eigenvalues not above `least`. Each connected part is solved
+    separately: the Lanczos method finds only one of several equal eigenvalues, which equal stacks and loose blocks
+    have.
     """
     scaled.eliminate_zeros()
     bodies, body = connected_components(scaled, directed=False)
@@ -128,7 +130,7 @@ def _slowest(scaled: csr_array, count: int, least: float) -> tuple[Array, Array,
 
 
 def _slowest_of_body(scaled: csr_array, count: int, least: float) -> tuple[Array, Array, int]:
-    """As `_slowest` of what hangs together; there may be any number of loose motions, slower than all others."""
+    """As `_slowest`, for one connected part; any number of loose motions may be slower than all others."""
     sought, size = count, scaled.shape[0]
     while True:
         square, vectors = _eigenvectors(scaled, sought, -least)
@@ -139,14 +141,14 @@ def _slowest_of_body(scaled: csr_array, count: int, least: float) -> tuple[Array
 
 
 def _eigenvectors(scaled: csr_array, count: int, shift: float) -> tuple[Array, Array]:
-    """Eigenvalues of a symmetric matrix, ascending, and eigenvectors: all of a small one, else more than the `count`.
+    """Eigenvalues of a symmetric matrix, ascending, and eigenvectors: all of a small one, else more than `count`.
 
-    None is below the `shift`.
+    No eigenvalue is below `shift`.
     """
     size = scaled.shape[0]
     if size > max(DENSE, 3 * count):
         start = np.random.default_rng(0).standard_normal(size)
-        with suppress(ArpackError):  # of many equal ones its subspace may have no more directions
+        with suppress(ArpackError):  # with many equal eigenvalues the subspace may be exhausted
             square, vectors = eigsh(scaled.tocsc(), k=count + 6, sigma=shift, which="LM", v0=start)
             order = np.argsort(square)
             return square[order], vectors[:, order]

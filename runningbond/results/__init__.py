@@ -1,6 +1,6 @@
-"""What every model returns, and its round trip to disk.
+"""The outcome that every model returns, and how it is stored on disk and read back.
 
-Files for ParaView and pictures are made by modules of their own, imported by name: none of them can change a number.
+ParaView files and pictures are written by separate modules that are imported by name and cannot change any number.
 """
 
 from .mechanism import MechanismCheck, check_mechanism, fastest_corner_by_one

@@ -1,4 +1,4 @@
-"""Mechanisms: how blocks move at collapse, brought to one size, and whether loads can drive such a motion at all."""
+"""Mechanisms: block motions at collapse, their scaling to a common size, and a check that the loads can drive them."""
 
 from dataclasses import dataclass
 
@@ -8,10 +8,10 @@ from runningbond.joints import JointPoints, wall_caps, wall_points
 from runningbond.scene import Array, Blocks, Indices, Scene
 
 MAX_OVERLAP = 0.02
-"""Overlap of blocks, in motions of the fastest corner, that the elastic joints of some models leave in a mechanism."""
+"""Overlap of blocks in a mechanism, relative to the motion of the fastest corner, that elastic joints may leave."""
 
 WORK_TOLERANCE = 0.01
-"""Negative work of all loads, relative to that of each of them, that energy stored in elastic joints may pay for."""
+"""Negative work of all loads, relative to the sum of their absolute works, that elastic energy of joints may supply."""
 
 
 def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
@@ -21,14 +21,14 @@ def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
 
 
 def carried(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
-    """Displacements ``(n, 2)`` [m] of points ``(n, 2)`` of blocks ``(n,)`` that move by ``(nb, 3)``, to first order."""
+    """Linearised displacements ``(n, 2)`` [m] of points ``(n, 2)`` on blocks ``(n,)`` for motions ``(nb, 3)``."""
     arm = at - blocks.centroid[block]
     u, v, spin = motion[block].T
     return np.column_stack([u - spin * arm[:, 1], v + spin * arm[:, 0]])
 
 
 def turned(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
-    """Displacements ``(n, 2)`` [m] of points ``(n, 2)`` of blocks ``(n,)`` that move by ``(nb, 3)``, however far."""
+    """Displacements ``(n, 2)`` [m] of points ``(n, 2)`` on blocks ``(n,)`` for finite motions ``(nb, 3)``."""
     arm = at - blocks.centroid[block]
     u, v, spin = motion[block].T
     less, sine = np.cos(spin) - 1, np.sin(spin)
@@ -36,19 +36,19 @@ def turned(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
 
 
 def turned_frames(points: JointPoints, motion: Array) -> tuple[Array, Array]:
-    """Normals and tangents ``(np, 2)`` of joint points, which turn with their block a in a motion ``(nb, 3)``."""
+    """Normals and tangents ``(np, 2)`` of joint points, rotated with their block a by a motion ``(nb, 3)``."""
     spin = motion[points.block[:, 0], 2]
     return rotated(points.normal, spin), rotated(points.tangent, spin)
 
 
 def rotated(vectors: Array, angle: Array) -> Array:
-    """Vectors ``(n, 2)`` turned by angles ``(n,)`` [rad]."""
+    """Vectors ``(n, 2)`` rotated by angles ``(n,)`` [rad]."""
     (x, y), cosine, sine = vectors.T, np.cos(angle), np.sin(angle)
     return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
 
 
 def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array) -> tuple[Array, Array]:
-    """Opening and slip [m] of joint points between rigid blocks that move by ``(nb, 3)``, two ``(np,)``."""
+    """Opening and slip, two ``(np,)`` [m], of joint points between rigid blocks with motions ``(nb, 3)``."""
     a, b = (carried(blocks, side, points.position, motion) for side in points.block.T)
     jump = b - a
     return (jump * points.normal).sum(axis=1), (jump * points.tangent).sum(axis=1)
@@ -56,18 +56,18 @@ def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array) -> tuple[Arr
 
 @dataclass(frozen=True)
 class MechanismCheck:
-    """What shows whether a motion can be a collapse.
+    """Quantities that decide whether a motion can be a collapse mechanism.
 
     Parameters
     ----------
     live
-        Work of the live load [J] at λ = 1, the fastest corner moving by one metre; None where the load exerts no force.
+        Work of the live load [J] at λ = 1 if the fastest corner moves by one metre; None if λ = 0 or it has no force.
     total
         Work of the dead load and λ times the live load [J].
     scale
-        Sum of the absolute values of those two [J], by which `total` is judged; inf where a support drives the motion.
+        Sum of the absolute works of both loads [J], the reference for `total`; inf if a moving support drives the wall.
     overlap
-        Largest overlap of two blocks at the ends of a joint that cannot crush, per motion of the fastest corner.
+        Largest overlap at the ends of joints that cannot crush, relative to the motion of the fastest corner.
     """
 
     live: float | None
@@ -83,7 +83,7 @@ class MechanismCheck:
 
     @property
     def warning(self) -> str:
-        """What is wrong with the motion, in plain words; empty where nothing is."""
+        """Description of what is wrong with the motion; empty if nothing is."""
         if self.live is not None and self.live <= 0:
             return f"the live load does {'negative' if self.live < 0 else 'no'} work on this motion"
         if not self.is_driven:
@@ -94,10 +94,10 @@ class MechanismCheck:
 
 
 def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multiplier: float) -> MechanismCheck:
-    """Check the motion of a mechanism against the loads that are said to drive it.
+    """Check a mechanism against the loads that should drive it.
 
-    A velocity field of collapse satisfies ``f_live · u̇ > 0`` and ``(f_dead + λ f_live) · u̇ ≥ 0``, for the loads do the
-    work that friction and crushing dissipate, and no joint that cannot crush closes beyond contact.
+    Velocities at collapse satisfy ``f_live · u̇ > 0`` and ``(f_dead + λ f_live) · u̇ ≥ 0``, because the loads do the
+    work that friction and crushing dissipate. Joints that cannot crush do not close beyond contact.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
     dead, live : (3 nb,) float
         Forces and moments of the loads on the blocks [N, N, N m].
     multiplier
-        λ under which the wall moves; 0 where it collapses under its dead load, whatever the live load does then.
+        λ at which the wall moves; 0 if it collapses under its dead load, and the live load's work is not checked.
     """
     motion = fastest_corner_by_one(scene.blocks, motion)
     by_dead, by_live = float(dead @ motion.ravel()), float(live @ motion.ravel())

@@ -25,47 +25,47 @@ class Outcome:
         multiple of the live load brings it down; ``infeasible``: it collapses under its dead load; ``undecided``:
         the budget ran out or nothing was proved; ``failed``: the numbers cannot be trusted.
     multiplier
-        λ at collapse; for a point load of 1 N, newtons. None unless there is a collapse.
+        λ at collapse, which is in newtons for a point load of 1 N. None unless the status is ``collapse``.
     lower, upper
-        Bracket of the collapse multiplier; each None where the model has no such bound. What the bracket
-        means, a proof or a pair of runs, is in the message.
+        Bracket of the collapse multiplier; each None if the model has no such bound. The message says what the bracket
+        means: a proof or a pair of runs.
     dofs, steps
-        Degrees of freedom; steps, iterations or programs that were solved. None for a closed form.
+        Degrees of freedom; number of steps, iterations or programs solved. None for a closed form.
     seconds, message
         Wall-clock time, and one line for the reader.
     motion : (nb, 3) float
-        Collapse mechanism: displacement of each block's centroid [m] and rotation [rad], the fastest corner
-        moving by one metre. Empty without one.
+        Collapse mechanism: displacement of each block's centroid [m] and rotation [rad], scaled so that the fastest
+        corner moves by one metre. Empty if there is none.
     force : (np, 2) float
-        Normal and tangential force at each contact point [N], tension positive. Empty without them.
+        Normal and tangential force at each contact point [N], tension positive. Empty if not known.
     pull : (nt, 1) float
-        Pull of each tie [N]. Empty without them.
+        Pull of each tie [N]. Empty if not known.
     held : (n, 1) float
-        What each held motion of a block is held with, those of `Scene.pins` and then `Scene.late_pins`: a force on the
-        block along the pin's direction [N], or a moment [N m]. Empty without them.
+        Reaction of each held motion of a block, first those of `Scene.pins`, then those of `Scene.late_pins`: a force
+        on the block along the pin's direction [N], or a moment [N m]. Empty if not known.
     far_motion, far_force, far_pull, far_held
-        The same four at the other end of an interval of certified loads: at `upper`, or `lower` of a support that
-        moves. Empty for models that certify none.
+        The same four quantities at the other end of an interval of certified loads: at `upper`, or at `lower` for a
+        moving support. Empty for models that certify no interval.
     curve : (n, 2) float
-        Pushover curve: displacement of the control point along the live load [m], from the rest under the dead load
-        on, and λ. Empty for models that follow no path. The control point is where a point load acts, or the wall's
-        highest corner that lies farthest along a lateral load.
+        Pushover curve: displacement of the control point along the live load [m], measured from the state at rest under
+        the dead load, and λ. Empty for models that follow no path. The control point is where a point load acts, or the
+        wall's highest corner that lies farthest along a lateral load.
     path : (n, k) float
-        What else is known of the states of `curve`, in columns that `path_columns` name with their units: reactions
-        of all supports (`Supports`), the works of the dead and of the live load since the wall was built, and whether
-        it rests (1) or falls (0). Without a curve one row at most, the collapse; not a number is what is not known.
+        Further quantities of the states of `curve`, with names and units in `path_columns`: reactions of all supports
+        (`Supports`), work of the dead and of the live load since the wall was built, and whether the wall is at rest
+        (1) or falls (0). Without a curve at most one row, the collapse. Unknown values are NaN.
     path_columns
         Names of the columns of `path`.
     moments : (n nb, 3) float
-        Motions of all blocks [m, rad] since the wall was built, at some moments of its way and its fall, one after the
-        other. Empty where none were kept.
+        Motions of all blocks [m, rad] since the wall was built, at selected moments of its loading and its fall,
+        stacked moment by moment. Empty if none were kept.
     moment_loads : (n, 1) float
         λ at those moments.
     fall
-        Smallest load under which the wall was seen to fall, where `upper` takes in others that fell later; else None.
+        Smallest load at which the wall was found to fall, if `upper` also covers load paths that fell later; else None.
     crushed : (nj, 2) float
-        How far each joint has closed for good at its ends [m], up to where the mechanism was seen. Empty where no joint
-        crushes, or a model does not follow how it does.
+        Plastic closure of each joint at its ends [m], up to the state that shows the mechanism. Empty if no joint
+        crushes or the model does not track crushing.
     """
 
     scene: str
@@ -112,11 +112,11 @@ class Outcome:
             raise ValueError(f"multiplier = {self.multiplier}: exists if and only if the status is collapse")
 
     def summary(self) -> dict[str, Any]:
-        """The scalars, in the order of the command line's contract."""
+        """Return the scalar fields in the order of the command line's JSON object."""
         return {key: getattr(self, key) for key in SCALARS}
 
     def curve_columns(self, multiplier: str = "multiplier", displacement: str = "displacement") -> dict[str, Array]:
-        """Curve and path, column by column; without a curve the collapse, where something is known of it."""
+        """Return curve and path by column name; without a curve, the one row of the collapse if it has a path."""
         collapse = [(np.nan, self.multiplier)] * len(self.path)
         moved, load = (self.curve if len(self.curve) else np.array(collapse, dtype=float).reshape(-1, 2)).T
         return {multiplier: load, displacement: moved, **dict(zip(self.path_columns, self.path.T, strict=True))}
@@ -130,17 +130,17 @@ ARRAYS |= {"crushed": 2, "moments": 3, "moment_loads": 1}
 
 
 def joined(*parts: str) -> str:
-    """Those parts of a message that say anything."""
+    """Join the non-empty parts of a message with semicolons."""
     return "; ".join(filter(None, parts))
 
 
 def two_digits(value: float) -> str:
-    """A number with the two digits that count, without an exponent below a million."""
+    """Format a number with two significant digits, without an exponent below a million."""
     return f"{float(f'{value:.2g}'):g}"
 
 
 def number(value: float) -> str:
-    """Four decimals for a multiplier of order one, whole newtons for a force of a thousand or more."""
+    """Format a multiplier of order one with four decimals, and a force of a thousand or more in whole newtons."""
     if value != 0 and abs(value) < 0.01:
         return f"{value:.3g}"
     decimals = 4 if abs(value) < 100 else 1 if abs(value) < 1000 else 0

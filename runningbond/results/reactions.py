@@ -1,11 +1,11 @@
-"""What holds a wall, and with which forces: the path quantities of an outcome.
+"""Support reactions, which are part of the path quantities of an outcome.
 
-A held block is one that is fixed and touched or tied, or pinned, as a beam may be. What holds it is the balance of its
-joint forces, its ties' pulls and its loads,
+A held block is either fixed and in contact or tied, or pinned, as a beam may be. Its reaction balances its joint
+forces, the pulls of its ties and its loads,
 
-    R = B_nᵀ N + B_tᵀ S + B_tieᵀ T − f_dead − λ f_live,
+    R = B_nᵀ N + B_tᵀ S + B_tieᵀ T − f_dead − λ f_live.
 
-of a fixed one the forces alone, for loads on it go straight into the ground. Reactions act on the wall.
+For a fixed block the loads are omitted, because they go straight into the ground. Reactions act on the wall.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,48 +22,48 @@ WORKS = ("work of the dead load [J]", "work of the live load [J]")
 AT_REST = "at rest"
 
 UNFELT = 1e-6
-"""Force, beside the largest in any joint, that counts as none."""
+"""Force, relative to the largest joint force, up to which a moving support counts as unloaded."""
 
 COME_FREE = "it bridges the support, which bears nothing of it where the settlement ends"
-"""What is said of a wall at rest whose supports have come free."""
+"""Message for a wall at rest whose moving supports no longer carry any load."""
 
 
 def resultants(body: Indices, at: Array, force: Array, about: Array) -> Array:
-    """Sums of forces ``(n, 2)`` at points ``(n, 2)`` on bodies ``(n,)``, moments about ``(k, 2)``: ``(k, 3)``."""
+    """Sum forces ``(n, 2)`` at points ``(n, 2)`` per body ``(n,)``, with moments about ``(k, 2)``, to ``(k, 3)``."""
     arm, total = at - about[body], np.zeros((len(about), 3))
     np.add.at(total, body, np.column_stack([force, arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]]))
     return total
 
 
 class Supports:
-    """The held blocks of a scene that is joined at some points.
+    """The held blocks of a scene and their reactions.
 
     Parameters
     ----------
     scene, points
-        The scene, and the points of which joint forces are known.
+        The scene, and the joint points at which forces are given.
     owner : (n,) int
-        Block of each body that `points` know; None where bodies are the scene's blocks.
+        Block of each body to which `points` refer; None if the bodies are the scene's blocks.
 
     Attributes
     ----------
     block : (k,) int
         The held blocks.
     about : (k, 2) float
-        Point about which each one's moment is taken [m]: the middle of its pins, or of where it is touched.
+        Reference point of each block's moment [m]: the middle of its pins, else of its joint points, else of its ties.
     """
 
     def __init__(self, scene: Scene, points: JointPoints, owner: Indices | None = None) -> None:
         sides = points.block if owner is None else owner[points.block]
         touched = np.isin(np.arange(len(scene.blocks)), [*sides.ravel(), *scene.ties.block.ravel()])
-        self._pins = scene.pins  # what is held later as well is held from the first, at the same point
+        self._pins = scene.pins  # late pins hold blocks that are pinned anyway, at the same point
         self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), self._pins.block)
         number = np.full(len(scene.blocks), -1)
         number[self.block] = np.arange(len(self.block))
         self._point, side = np.nonzero((number[sides] >= 0) & (sides[:, :1] != sides[:, 1:]))
         self._body, self._points = number[sides][self._point, side], points.part(self._point)
         self._sign = np.where(side == 1, 1.0, -1.0)[:, None]
-        # A tie draws its second end against its direction, and its first one along it.
+        # A tie pulls its first end along its direction and its second end against it; reactions oppose these pulls.
         tied = np.append(number, -1)[scene.ties.block]
         self._tie, end = np.nonzero(tied >= 0)
         self._tied, self._tied_at = tied[self._tie, end], scene.ties.ends[self._tie, end]
@@ -90,7 +90,7 @@ class Supports:
 
     @property
     def columns(self) -> list[str]:
-        """Names of the numbers that `reactions` gives, and of the ties' forces."""
+        """Names of the values that `reactions` returns, tie forces last."""
         ties = [f"tie {k} [N]" for k in range(len(self._scene.ties))]
         heads = ("horizontal [N]", "vertical [N]", "moment about {} [N m]")
         told = [self._scene.blocks.place(place, 6) for place in self.about]
@@ -107,7 +107,7 @@ class Supports:
         return [names.get(int(b), f"{'block' if scene.fixed[b] else 'pinned block'} {b}") for b in self.block]
 
     def reactions(self, force: Array, tie: Array, multiplier: float, *, at_rest: bool = True) -> Array:
-        """Horizontal and vertical reaction and moment of each held block, ``(3 k,)`` [N, N, N m], and ties' forces.
+        """Horizontal and vertical reaction and moment of each held block, ``(3 k,)`` [N, N, N m], then tie forces.
 
         Parameters
         ----------
@@ -118,7 +118,7 @@ class Supports:
         multiplier
             λ.
         at_rest
-            Whether the wall rests; if not, what holds a pinned block also has its inertia to bear and is not a number.
+            Whether the wall is at rest; if not, reactions of pinned blocks include inertia forces and are set to NaN.
         """
         points, (normal, tangential) = self._points, force[self._point].T[:, :, None]
         pull = self._sign * (normal * points.normal + tangential * points.tangent)
@@ -129,9 +129,9 @@ class Supports:
         return np.append(total.ravel(), tie)
 
     def have_come_free(self, force: Array, tie: Array) -> bool:
-        """Whether the supports that move bear nothing; forces of points and ties as of `reactions`.
+        """Whether the moving supports carry no load; joint forces and tie forces as in `reactions`.
 
-        What is borne where they do not move, at the point about which they turn, is not in their way.
+        Each force is weighted by the displacement of its point, so that a force at the centre of rotation is ignored.
         """
         block = self.block[np.append(self._body, self._tied)]
         at = np.concatenate([self._points.position, self._tied_at])
@@ -149,9 +149,9 @@ class Supports:
         *,
         falls: bool = False,
     ) -> dict[str, Any]:
-        """Path and names of its columns, as `Outcome` has them, of states with forces of points and ties, and works.
+        """Return `path` and `path_columns` of an `Outcome` for states with given joint forces, tie forces and works.
 
-        Works are ``(n, 2)``. All states rest, or all but the last one where the wall `falls`.
+        Works are ``(n, 2)`` [J]. All states are at rest, except for the last one if the wall `falls`.
         """
         resting = [True] * (len(forces) - falls) + [False] * falls
         states = zip(forces, ties, multipliers, resting, strict=True)
@@ -161,5 +161,5 @@ class Supports:
 
 
 def collapse_state(scene: Scene, points: JointPoints, force: Array, tie: Array, multiplier: float) -> dict[str, Any]:
-    """The path of a model that knows the forces at collapse alone: one row, whose works are not numbers."""
+    """Return the path of a model that computes only the forces at collapse: one row, with NaN for the works."""
     return Supports(scene, points).path([force], [tie], [multiplier], np.full((1, 2), np.nan))

@@ -1,4 +1,4 @@
-"""A scene as arrays of numbers and back, so that a result is stored with the wall it is about."""
+"""Conversion of a scene to arrays and back, so that a result is stored together with its wall."""
 
 import json
 from collections.abc import Mapping
@@ -15,16 +15,16 @@ from runningbond.scene import Action, GivenForces, Scene
 DATACLASSES: dict[str, Any] = {
     name: part for name, part in vars(runningbond.scene).items() if isinstance(part, type) and is_dataclass(part)
 }
-"""What scenes are made of, by name."""
+"""Dataclasses that scenes consist of, by name."""
 
 SCENE_KEY = "scene"
-"""Name of the array with the scene's words and numbers, JSON in UTF-8; its arrays are named after it."""
+"""Name of the array with the scene's texts and numbers (JSON in UTF-8), and prefix of the names of its other arrays."""
 
 
 def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
-    """Arrays that say everything about a scene, by names that start with ``scene``.
+    """Return arrays that describe a scene completely, under names that start with ``scene``.
 
-    Of a load of a user's own they hold its forces and where it is read, and of a law its name.
+    For a user-defined load they contain its forces and its control point; for a joint law, only its name.
     """
     arrays: dict[str, NDArray[Any]] = {}
 
@@ -48,7 +48,7 @@ def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
 
 
 def scene_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Scene:
-    """The scene that `scene_to_arrays` took apart; KeyError where there is none."""
+    """Rebuild a scene from the arrays of `scene_to_arrays`, without joint laws; KeyError if there is none."""
 
     def decoded(value: Any) -> Any:
         if isinstance(value, dict):

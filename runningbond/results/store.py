@@ -1,7 +1,8 @@
 """Outcomes and responses on disk: written completely or not at all, and read only if nothing is missing.
 
-A result folder holds ``outcome.json`` or ``response.json`` and the arrays it names. The arrays are written first, under
-a name that carries their digest; the JSON file is moved into place last, and only what it vouches for is read.
+A result folder holds ``outcome.json`` or ``response.json`` and the array file that it names. The arrays are written
+first, under a name that contains their digest; the JSON file is moved into place last. A folder is read only if the
+checksum in the JSON file matches.
 """
 
 import errno
@@ -26,7 +27,7 @@ from .scene_arrays import SCENE_KEY, scene_from_arrays, scene_to_arrays
 
 RECORD, RESPONSE_RECORD = "outcome.json", "response.json"
 ARRAY_FILES = f"arrays-{'[0-9a-f]' * 16}.npz"
-"""Pattern of the names of the arrays' files: no others are anybody's but the user's."""
+"""Glob pattern of the names of array files; files with other names belong to the user and are left alone."""
 
 
 class StoreError(Exception):
@@ -35,9 +36,9 @@ class StoreError(Exception):
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A new file beside another one, whose place it takes once it is written; an OSError names the latter.
+    """Yield a new file beside `path` that replaces it once written; an OSError names `path`.
 
-    Where something goes wrong, all is left as it was before. The folder is made if missing.
+    If anything goes wrong, everything is left as it was before. The folder is created if missing.
     """
     with _errors_named(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -45,7 +46,7 @@ def replacing(path: Path) -> Iterator[Path]:
         os.close(handle)
         try:
             yield Path(name)
-            with open(name, "r+b") as file:  # Windows brings nothing to the disk through a file that is only read
+            with open(name, "r+b") as file:  # Windows cannot flush a file that is opened only for reading
                 os.fsync(file.fileno())
             os.chmod(name, 0o644)
             os.replace(name, path)
@@ -80,9 +81,9 @@ def _errors_named(path: Path) -> Iterator[None]:
 
 
 def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:
-    """Write an outcome into a folder of its own, made if missing.
+    """Write an outcome into its own folder, created if missing.
 
-    `load_outcome` gives back its key, what it was computed from, and `load_scene` the wall that it is about.
+    `load_outcome` also returns the key, which identifies the input it was computed from; `load_scene` returns the wall.
     """
     columns: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
     if outcome.path_columns:
@@ -92,12 +93,12 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
 
 
 def save_response(summary: Mapping[str, Any], scene: Scene, folder: Path) -> None:
-    """Write what is said of a response into a folder, made if missing; `load_scene` gives back the wall."""
+    """Write the summary of a response into a folder, created if missing; `load_scene` reads its wall back."""
     _save(folder, RESPONSE_RECORD, summary, scene_to_arrays(scene))
 
 
 def _save(folder: Path, name: str, said: Mapping[str, Any], columns: Mapping[str, NDArray[Any]]) -> None:
-    """Write a record of a name, and the arrays that it vouches for."""
+    """Write a JSON file and the arrays that its checksum covers."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **columns)
     content = buffer.getvalue()
@@ -105,7 +106,7 @@ def _save(folder: Path, name: str, said: Mapping[str, Any], columns: Mapping[str
     scalars = {"arrays": arrays, **said}
     record = {**scalars, "sha256": _seal(scalars, content)}
     make_folder(folder)
-    with locked(folder):  # or another writer would take these arrays for stale ones
+    with locked(folder):  # otherwise another writer would delete these arrays as stale
         write_atomically(folder / arrays, content)
         write_atomically(folder / name, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
         for stale in (*folder.glob(ARRAY_FILES), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{name}.*")):
@@ -119,7 +120,7 @@ def _seal(scalars: dict[str, object], content: bytes) -> str:
 
 
 def load_outcome(folder: Path) -> tuple[Outcome, str]:
-    """Read an outcome and its key; a StoreError if there is none, or anything of it is missing, damaged or changed."""
+    """Read an outcome and its key; StoreError if there is none, or if any part is missing, damaged or changed."""
     with _trusted(folder) as (record, stored):
         path = ("path", "path_columns") if "path" in stored else ()
         arrays: dict[str, Any] = {name: stored[name] for name in (*ARRAYS, *path) if name in stored}
@@ -128,18 +129,18 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
 
 
 def holds_response(folder: Path) -> bool:
-    """Whether a folder has a response, and not an outcome."""
+    """Whether a folder contains a response and no outcome."""
     return (folder / RESPONSE_RECORD).is_file() and not (folder / RECORD).is_file()
 
 
 def load_response_summary(folder: Path) -> dict[str, Any]:
-    """Read what is said of a response; StoreError as of `load_outcome`."""
+    """Read the summary of a response; StoreError as in `load_outcome`."""
     with _trusted(folder, RESPONSE_RECORD) as (record, _):
         return record
 
 
 def load_scene(folder: Path) -> Scene:
-    """Read back the scene of an outcome or a response; StoreError as of `load_outcome`, or where none was stored."""
+    """Read the scene of an outcome or a response; StoreError as in `load_outcome`, or if no scene was stored."""
     with _trusted(folder, RESPONSE_RECORD if holds_response(folder) else RECORD) as (_, stored):
         if SCENE_KEY not in stored:
             raise StoreError(f"{folder}: holds an outcome without its scene")
@@ -148,7 +149,7 @@ def load_scene(folder: Path) -> Scene:
 
 @contextmanager
 def _trusted(folder: Path, name: str = RECORD) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
-    """Give the record of a name and the arrays of a folder, if they are what was written."""
+    """Yield the content of a JSON file and the arrays of a folder, if their checksum matches."""
     try:
         with locked(folder, reading=True):
             record = json.loads((folder / name).read_bytes())

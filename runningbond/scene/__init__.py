@@ -1,4 +1,4 @@
-"""What is modelled: blocks, joints, materials, supports and loads, and the file they are read from."""
+"""Description of a wall: blocks, joints, materials, supports and loads, and the scene file they are read from."""
 
 from .actions import Action
 from .arrays import Array, Indices, Mask, Unsigned, frozen

@@ -1,4 +1,4 @@
-"""What a load is: the forces that it puts on a scene's blocks, and what else follows from them."""
+"""Base class of all loads: the forces that a load puts on a scene's blocks, and what is derived from them."""
 
 from typing import TYPE_CHECKING, Any, get_type_hints
 
@@ -14,36 +14,36 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 LEAST_COMPONENT = 1e-6
-"""Least component of a force that is not 0, in the other one: what is smaller is lost in a program's tolerance."""
+"""Smallest nonzero component of a vector, relative to the other: a smaller one is lost in a solver's tolerance."""
 
 
 ROUNDING = 1e-12
-"""Component, in the other one, that is what a computed sine or cosine leaves of zero."""
+"""Component, relative to the other one, up to which it counts as 0: rounding error of a computed sine or cosine."""
 
 
 class Action:
-    """A load. `forces` is what every kind has to say; the rest follows from it unless a kind knows better."""
+    """A load. Every kind must define `forces`; all other methods have defaults, which a kind may override."""
 
     def forces(self, scene: "Scene") -> Forces:
-        """Forces on a scene's blocks; of a live load, those at λ = 1."""
+        """Forces on a scene's blocks; for a live load, those at λ = 1."""
         raise NotImplementedError(f"{type(self).__name__} says no forces")
 
     def forces_by_piece(self, scene: "Scene", edges: Array) -> Forces:
-        """Forces on a scene's blocks, at points that each lie in one of the pieces that they are cut into.
+        """Forces on a scene's blocks when the blocks are divided into pieces; each force then acts on a single piece.
 
-        The pieces are triangles, of a mesh or of blocks that may crack, and given by their edges ``(n, 2, 2)`` [m].
+        The pieces are triangles of a mesh or of blocks that may crack, given by their edges ``(n, 2, 2)`` [m].
         """
         return self.forces(scene)
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a scene that the load cannot act on, in a `SceneError` under its key."""
+        """Raise a `SceneError` under the load's key if the load cannot act on this scene."""
 
     def note(self, multiplier: float) -> str:
-        """What an outcome's message is to say of a multiplier, beside its number."""
+        """Text about a load multiplier that an outcome's message shows next to its value."""
         return ""
 
     def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
-        """What is drawn: an arrow at each point with a force, and a row of them for a force on the blocks' mass."""
+        """Arrows for drawings: one at each point with a force, and a row of arrows for a force on the blocks' mass."""
         forces = self.forces(scene)
         tips = [tuple(tip) for tip in forces.at.tolist()]
         arrows = []
@@ -55,10 +55,10 @@ class Action:
         return tuple(arrows)
 
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
-        """Blocks whose displacement is averaged at the control point ``(n,)``, the point and a direction ``(2,)``.
+        """Blocks ``(n,)`` whose displacement is averaged at the control point, this point, and a direction ``(2,)``.
 
-        It is where the first force at a point of a block that can move acts, or else the highest corner that
-        lies farthest along the load (the paper's upper corner on the side of the push).
+        The control point is where the first point force on a movable block acts. Without such a force it is the highest
+        corner that lies farthest along the load (the paper's upper corner on the side of the push).
         """
         arrows = self.arrows(scene)
         for arrow in arrows:
@@ -76,12 +76,12 @@ class Action:
 
     @classmethod
     def read(cls, table: Table) -> "Action":
-        """The load that a table of a file describes: vectors, named as the fields of its dataclass are."""
+        """Read the load from a table of a scene file, whose keys are vectors named like the fields of the dataclass."""
         return cls(**{name: table.vector(name) for name in get_type_hints(cls)})
 
 
 def nonzero_vector(key: str, value: Any) -> tuple[float, float]:
-    """A vector that is not zero, neither component of which is lost in the other."""
+    """Return a vector with rounding errors set to 0; refuse a zero vector, or a nonzero but negligible component."""
     pair = vector(key, value)
     rounding = ROUNDING * max(map(abs, pair))
     pair = pair[0] * (abs(pair[0]) > rounding), pair[1] * (abs(pair[1]) > rounding)
@@ -95,6 +95,6 @@ def nonzero_vector(key: str, value: Any) -> tuple[float, float]:
 
 
 def unit_vector(direction: Array) -> Array:
-    """A direction ``(2,)`` as a unit vector; along x where it is zero."""
+    """A direction ``(2,)`` as a unit vector; a zero direction becomes the x axis."""
     length = np.hypot(*direction)
     return direction / length if length > 0 else np.array([1.0, 0.0])

@@ -1,4 +1,4 @@
-"""Array types shared by every room, the one way to freeze an array, and which things hang together."""
+"""Array types shared by all packages, a function that freezes arrays, and connected components."""
 
 from typing import Any, TypeAlias
 
@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.int64]
 Unsigned: TypeAlias = NDArray[np.uint64]
-"""Indices of kernels, which ask of every index that may be negative whether it is."""
+"""Indices in compiled kernels: with signed ones, the kernel would check each index for being negative."""
 Mask: TypeAlias = NDArray[np.bool_]
 
 
@@ -22,7 +22,7 @@ def frozen(values: ArrayLike, dtype: type[Any] = np.float64) -> NDArray[Any]:
 
 
 def components(pairs: Indices, count: int) -> Indices:
-    """Number of the part ``(count,)`` that each of so many things is in, of which `pairs` ``(n, 2)`` hang together."""
+    """Connected component ``(count,)`` of each of `count` items, of which `pairs` ``(n, 2)`` are connected."""
     a, b = pairs.T
     graph = coo_array((np.ones(len(pairs)), (a, b)), shape=(count, count))
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)

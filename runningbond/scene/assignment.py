@@ -1,4 +1,4 @@
-"""Which material each block and each joint is of: the default one, unless an entry of ``[[assign]]`` says another."""
+"""Material of each block and each joint: the default one, unless an entry of ``[[assign]]`` chooses another."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,15 +16,15 @@ from .table import Table
 
 ANY = "*"
 GROUND, BEAM = "ground", "beam"
-"""Names that ``between`` has for blocks that are of no material: the ground, and the beam."""
+"""Names that ``between`` uses for bodies without a block material: the ground and the beam."""
 
 ORIENTATIONS = ("bed", "head")
-"""Joints that lie flatter than 45°, and the others."""
+"""Bed joints lie flatter than 45°; all others are head joints."""
 
 
 @dataclass(frozen=True)
 class Assignment:
-    """An entry: a material, and the blocks or joints that are of it. What is None does not choose."""
+    """An entry of ``[[assign]]``: a material, and the criteria that select its blocks or joints; None is not used."""
 
     key: str
     material: str
@@ -37,7 +37,7 @@ class Assignment:
 
 
 def read_assignments(content: Any, block_names: Sequence[str], joint_names: Sequence[str]) -> tuple[Assignment, ...]:
-    """The entries of ``[[assign]]``, in their order."""
+    """The entries of ``[[assign]]``, in the order of the file."""
     if not isinstance(content, list):
         raise SceneError("assign", "must be tables, [[assign]] with keys of their own", content)
     return tuple(_read(Table(f"assign[{k}]", one), block_names, joint_names) for k, one in enumerate(content))
@@ -84,16 +84,18 @@ def _pair(key: str, value: Any, options: Sequence[str]) -> tuple[str, str]:
 def assign_blocks(
     blocks: Blocks, names: Sequence[str], layers: Sequence[str], given: Mapping[int, str], entries: Sequence[Assignment]
 ) -> tuple[Indices, dict[int, str]]:
-    """Material of each block of a wall, ``(nb,)``: its place among names; and what became of each entry.
+    """Material of each block of a wall, ``(nb,)``, as an index into `names`, and a report on each entry.
 
     Parameters
     ----------
     names
         Names of the materials, the default one first.
     layers
-        Layer of each block; empty where there are none.
+        Layer of each block; empty if the blocks have none.
     given
-        Names of materials that single blocks have from their description, as lintels do.
+        Materials of blocks whose own description names one, such as lintels, by the numbers of these blocks.
+    entries
+        Entries of ``[[assign]]``; later ones override earlier ones.
     """
     material = np.zeros(len(blocks), dtype=np.int64)
     for block, name in given.items():
@@ -128,18 +130,18 @@ def assign_joints(
     reach: float,
     beam: tuple[int, str] | None = None,
 ) -> tuple[Indices, dict[int, str]]:
-    """Material of each joint, ``(nj,)``: its place among names; and what became of each entry.
+    """Material of each joint, ``(nj,)``, as an index into `names`, and a report on each entry.
 
-    That of potential cracks is not touched.
+    Entries do not change the material of potential cracks.
 
     Parameters
     ----------
     material_names
-        What ``between`` calls each block.
+        Name that ``between`` uses for each block.
     reach
-        Distance [m] within which contacts reach.
+        Contact tolerance [m].
     beam
-        Number of the beam, and the name of the material of its joints.
+        Block number of the beam, and the name of the material of its joints.
     """
     material = np.zeros(len(joints), dtype=np.int64)
     if beam:
@@ -154,7 +156,7 @@ def assign_joints(
 
 
 def _became(entries: Sequence[Assignment], chosen: Mapping[int, Mask], what: str) -> dict[int, str]:
-    """What became of entries, by their numbers: later ones take over what they choose too."""
+    """Report on each entry, by its number: how many blocks or joints it keeps after later entries override it."""
     said, later = {}, np.zeros(len(next(iter(chosen.values()), [])), np.bool_)
     for k in sorted(chosen, reverse=True):
         n, kept = int(chosen[k].sum()), int((chosen[k] & ~later).sum())
@@ -169,9 +171,10 @@ def _became(entries: Sequence[Assignment], chosen: Mapping[int, Mask], what: str
 
 
 def _in_box(points: Array, box: tuple[tuple[float, float], tuple[float, float]], reach: float) -> Mask:
-    """Whether points ``(n, 2)`` lie in a box, its border included as far as contacts reach.
+    """Whether points ``(n, 2)`` lie in a box or outside it by at most the contact tolerance `reach`.
 
-    Three courses of 0.1 m end at 0.30000000000000004 m, and three of 0.3 m at 0.8999999999999999 m.
+    Rounding makes this necessary: three courses of 0.1 m end at 0.30000000000000004 m, three of 0.3 m at
+    0.8999999999999999 m.
     """
     low, high = np.array(box)
     inside: Mask = np.all((points >= low - reach) & (points <= high + reach), axis=1)

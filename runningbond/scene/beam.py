@@ -33,13 +33,13 @@ class Drive:
     Parameters
     ----------
     force
-        Live force [N] at λ = 1; of a prescribed displacement a unit one along its first move, and λ is the reaction.
+        Live force [N] at λ = 1. For a prescribed displacement a unit force along its first move, and λ is the reaction.
     at
-        Height above the base of the wall at which it acts [m]; None is the beam's middle.
+        Height above the base of the wall at which the drive acts [m]; None is mid-height of the beam.
     path
-        Horizontal displacements [m] that the point is taken to, one after the other; empty for a force.
+        Horizontal displacements [m] prescribed at this point, one after the other; empty if a force drives the beam.
     rate
-        Speed at which they are gone through [m/s]; None leaves it to the model.
+        Speed of the prescribed displacement [m/s]; None leaves it to the model.
     """
 
     force: tuple[float, float]
@@ -58,7 +58,7 @@ class Drive:
 
     @classmethod
     def along(cls, path: tuple[float, ...], at: float | None = None, rate: float | None = None) -> "Drive":
-        """The drive through horizontal displacements [m]."""
+        """A drive that prescribes a sequence of horizontal displacements [m]."""
         numbers = tuple(Range().take("beam.drive.displacement", x) for x in path)
         moves = np.diff(np.concatenate([[0.0], numbers]))
         if not moves.any():
@@ -73,21 +73,21 @@ class Beam:
     Parameters
     ----------
     height, mass
-        Its height [m] and mass [kg].
+        Height [m] and mass [kg] of the beam.
     condition
-        ``"free"``; ``"level"``: it does not turn; ``"fixed-height"``: nor does it move up or down once the dead load
-        is on.
+        ``"free"``; ``"level"``: no rotation; ``"fixed-height"``: no rotation, and no vertical displacement once the
+        dead load has been applied.
     force
-        Dead force at its centre [N].
+        Dead force at the centre of the beam [N].
     force_line
-        Whether, at finite displacements, that force moves with the centre or keeps its line: a jack that stays where
-        it is, and under which the beam rolls, has a ``"fixed"`` one.
+        Whether, at finite displacements, this force moves with the centre or keeps its line of action. A jack that
+        stays in place while the beam rolls under it has a ``"fixed"`` line.
     drive
-        How it is driven; None where it is not.
+        How the beam is driven; None if it is not.
     joint
-        Name of the material of its joints with the wall; None is the default one.
+        Name of the material of the joints between beam and wall; None is the default one.
     block
-        Its number among the blocks of a scene; None before it is one of them.
+        Number of the beam among the blocks of a scene; None before it has been added to one.
     """
 
     height: Positive
@@ -108,7 +108,7 @@ class Beam:
             raise SceneError("beam.force", "is missing; force_line says where it acts", list(self.force))
 
     def outline(self, blocks: Blocks) -> Array:
-        """Its rectangle ``(4, 2)`` [m] on the highest level of a wall, as long as the sides that lie there."""
+        """Rectangle ``(4, 2)`` [m] of the beam on the highest level of a wall, as long as the edges at this level."""
         level = blocks.extent()[1][1]
         start, stop = blocks.vertices, blocks.vertices[blocks.successor]
         on_top = (np.minimum(start[:, 1], stop[:, 1]) >= level - blocks.tolerance) & (
@@ -121,33 +121,33 @@ class Beam:
         return np.array([[left, level], [right, level], [right, top], [left, top]])
 
     def pins(self, centroid: Array) -> Pins:
-        """What its condition holds of a body with that centroid ``(2,)`` [m] at any time."""
+        """Pins of a beam with this centroid ``(2,)`` [m] from the start: they hold its rotation unless it is free."""
         if self.condition == "free" or self.block is None:
             return NO_PINS
         return Pins(np.array([self.block]), centroid, np.zeros(2), np.ones(1))
 
     def late_pins(self, centroid: Array) -> Pins:
-        """What it holds once the dead load is on."""
+        """Pins that are added once the dead load has been applied: the height of a ``"fixed-height"`` beam."""
         if self.condition != "fixed-height" or self.block is None:
             return NO_PINS
         return Pins(np.array([self.block]), centroid, np.array([0.0, 1.0]))
 
     def loads(self) -> tuple[tuple[Action, ...], tuple[Action, ...]]:
-        """Its live and its dead loads."""
+        """Live loads and dead loads of the beam."""
         live = () if self.drive is None else (BeamLoad(self.drive.force, self.drive.at, "beam.drive"),)
         return live, (BeamLoad(self.force),) if any(self.force) else ()
 
 
 @dataclass(frozen=True)
 class BeamLoad(Action):
-    """A force [N] on the beam, at a height above the wall's base [m] or at its middle."""
+    """A force [N] on the beam, at a height above the base of the wall [m]; None is the beam's centroid."""
 
     force: tuple[float, float]
     height: float | None = None
     key: str = "beam.force"
 
     def forces(self, scene: "Scene") -> Forces:
-        """The force on the beam."""
+        """Force on the block that is the beam."""
         block = scene.beam.block if scene.beam else None
         if block is None:
             raise SceneError(self.key, "needs a beam", list(self.force))
@@ -158,7 +158,7 @@ class BeamLoad(Action):
 
 
 def read_beam(table: Table, joint_names: Sequence[str]) -> Beam:
-    """The beam that a table of a file describes, on joints of one of some names."""
+    """Read the beam from a table of a scene file; its joint material must be one of `joint_names`."""
     drive = table.optional_table("drive")
     beam = Beam(
         table.number("height", ABOVE_ZERO),

@@ -1,4 +1,4 @@
-"""Blocks: simple polygons in one ragged array, with their exact areas, centroids and inertias."""
+"""Blocks: simple polygons in one ragged array, with their exact areas, centroids and moments of inertia."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ from .arrays import Array, Indices, Mask, frozen
 from .errors import SceneError, coordinate, place
 
 CONTACT_TOLERANCE = 1e-4
-"""Gap that still counts as contact, as a fraction of the smallest block's size (root of its area).
+"""Largest gap that counts as contact, relative to the size of the smallest block (square root of its area).
 
-On a brick of 240 × 60 mm it is 12 µm: wider than the rounding of a drawing, finer than any joint.
+For a brick of 240 × 60 mm this is 12 µm: more than the rounding error of a drawing, less than the width of any joint.
 """
 
 
@@ -39,7 +39,7 @@ class Blocks:
 
     @classmethod
     def from_polygons(cls, polygons: Sequence[Array]) -> "Blocks":
-        """Gather a list of ``(n, 2)`` polygons [m], each given counter-clockwise."""
+        """Build the blocks from a list of ``(n, 2)`` polygons [m], each given counter-clockwise."""
         counts = [len(polygon) for polygon in polygons]
         return cls(np.concatenate(polygons), np.concatenate([[0], np.cumsum(counts)]))
 
@@ -52,7 +52,7 @@ class Blocks:
 
     @cached_property
     def owner(self) -> Indices:
-        """Block of each vertex and of the edge that starts there, ``(nv,)``."""
+        """Block that each vertex, and the edge starting there, belongs to, ``(nv,)``."""
         return frozen(np.repeat(np.arange(len(self)), np.diff(self.first)), np.int64)
 
     @cached_property
@@ -64,9 +64,9 @@ class Blocks:
 
     @cached_property
     def _local(self) -> tuple[Array, Array, Array]:
-        """Vertices, successors and their cross products, about each block's first vertex.
+        """Vertices, their successors and the cross products of both, relative to each block's first vertex.
 
-        Local origins keep the moments exact to rounding for a wall far from the origin.
+        With local origins the moments of area stay exact to rounding for a wall far from the origin.
         """
         origin = self.vertices[self.first[:-1]][self.owner]
         here, there = self.vertices - origin, self.vertices[self.successor] - origin
@@ -111,17 +111,17 @@ class Blocks:
 
     @cached_property
     def convex(self) -> Mask:
-        """Blocks without re-entrant corners that go round once, ``(nb,)``."""
+        """Whether blocks have no re-entrant corner and an outline that winds round once, ``(nb,)``."""
         edge, after = self._edges
         turn, along = cross(edge, after), (edge * after).sum(axis=1)
         reflex = np.logical_or.reduceat(self.reentrant, self.first[:-1])
-        # A polygon that winds twice has only left turns, and yet crosses itself.
+        # A polygon that winds round twice can have left turns only, but it crosses itself.
         twice = np.add.reduceat(np.arctan2(turn, along), self.first[:-1]) > 3 * np.pi
         return frozen(~(reflex | twice), np.bool_)
 
     @cached_property
     def reentrant(self) -> Mask:
-        """Corners that turn right, by more than the contact tolerance, ``(nv,)``."""
+        """Whether the outline turns right at each corner by more than the contact tolerance, ``(nv,)``."""
         reentrant = np.empty(len(self.vertices), dtype=np.bool_)
         reentrant[self.successor] = turns_right(*self._edges)
         return frozen(reentrant, np.bool_)
@@ -134,7 +134,7 @@ class Blocks:
         return edge, edge[self.successor]
 
     def shapes(self, block: Indices) -> NDArray[np.object_]:
-        """Some blocks as polygons of shapely's, ``(n,)``."""
+        """Shapely polygons of some blocks, ``(n,)``."""
         count = np.diff(self.first)[block]
         start = np.cumsum(count) - count
         vertex = np.repeat(self.first[block] - start, count) + np.arange(count.sum())
@@ -143,14 +143,14 @@ class Blocks:
 
     @cached_property
     def _bent(self) -> tuple[Indices, NDArray[np.object_]]:
-        """Blocks that are not convex, as numbers and as shapes."""
+        """Numbers and Shapely polygons of the blocks that are not convex."""
         bent = np.flatnonzero(~self.convex)
         shapes = self.shapes(bent)
         shapely.prepare(shapes)
         return bent, shapes
 
     def containing(self, point: Array) -> Indices:
-        """Blocks that hold or touch a point ``(2,)`` [m], to within the contact tolerance."""
+        """Blocks that contain or touch a point ``(2,)`` [m], to within the contact tolerance."""
         start, edge = self.vertices, self.vertices[self.successor] - self.vertices
         reach = point - start
         depth = (edge[:, 0] * reach[:, 1] - edge[:, 1] * reach[:, 0]) / np.hypot(*edge.T)
@@ -160,7 +160,7 @@ class Blocks:
         return np.flatnonzero(holds)
 
     def check(self) -> None:
-        """Refuse polygons that enclose nothing or cross themselves, in a `SceneError` that names the first."""
+        """Raise a `SceneError` that names the first polygon that has no area or crosses itself."""
         edge = self._local[1] - self._local[0]
         length = np.hypot(*edge.T)
         with np.errstate(invalid="ignore"):
@@ -177,20 +177,20 @@ class Blocks:
             raise SceneError(self.name(int(np.argmax(faulty))), fault)
 
     def name(self, block: int) -> str:
-        """What a message calls a block: its number and its centre in metres."""
+        """Name of a block in messages: its number, and the centre of its bounding box in metres."""
         return f"block {block} at {self.place(np.mean(self.extent(block), axis=0))}"
 
     def place(self, at: Array, digits: int = 4) -> str:
-        """What a message says of where a point ``(2,)`` [m] is; `coordinate` has it in so many digits."""
+        """Text for a point ``(2,)`` [m] in messages, with coordinates written as by `coordinate`."""
         return place(at, self._span, digits)
 
     def coordinate(self, value: float, digits: int = 4) -> str:
-        """What a message says of a coordinate [m]."""
+        """Text for a coordinate [m] in messages."""
         return coordinate(value, self._span, digits)
 
     @cached_property
     def _span(self) -> float:
-        """Larger side of the box around all blocks [m]."""
+        """Larger side of the bounding box of all blocks [m]."""
         low, high = self.extent()
         return float((high - low).max())
 
@@ -202,17 +202,17 @@ class Blocks:
 
 
 def cross(here: Array, there: Array) -> Array:
-    """Cross products of edges ``(n, 2)`` and the next ones, ``(n,)`` [m²]."""
+    """Cross products of edges ``(n, 2)`` and the edges that follow them, ``(n,)`` [m²]."""
     return np.asarray(here[:, 0] * there[:, 1] - here[:, 1] * there[:, 0])
 
 
 def turns_right(here: Array, there: Array) -> Mask:
-    """Whether an outline turns right, by more than the contact tolerance, from edges ``(n, 2)`` to the next ones."""
+    """Whether the outline turns right from edges ``(n, 2)`` to those that follow them, by more than the tolerance."""
     return np.asarray(cross(here, there) < -CONTACT_TOLERANCE * (np.hypot(*here.T) * np.hypot(*there.T)))
 
 
 def touching_boxes(low: Array, high: Array) -> tuple[Indices, Indices]:
-    """Pairs of boxes that meet, each in both orders and with itself, from their corners ``(n, 2)`` [m]."""
+    """Pairs of boxes that intersect: each pair in both orders, and each box with itself; corners are ``(n, 2)`` [m]."""
     boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     a, b = shapely.STRtree(boxes).query(boxes)
     return a, b

@@ -1,4 +1,4 @@
-"""Generators: blocks of running bond and of course patterns, on the half-block lattice."""
+"""Generators of walls on the half-block lattice: running bond and course patterns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ Rows: TypeAlias = list[tuple[Array, Array]]
 
 BLOCK_LIMIT = 1_000_000
 LATTICE_TOLERANCE = 1e-6
-"""How far a length may be from a whole number of half blocks, in half blocks."""
+"""Largest deviation from a whole number of half blocks: absolute up to one, relative to the number above."""
 
 
 @dataclass(frozen=True)
@@ -33,26 +33,26 @@ class Bond:
             object.__setattr__(self, name, ABOVE_ZERO.take(f"wall.block_{name}", getattr(self, name)))
 
     def courses_in(self, height: float) -> int:
-        """Number of courses in a height [m], which is refused unless it is a whole one."""
+        """Number of courses in a height [m]; raises a `SceneError` unless it is a whole number."""
         return _whole_number(height / self.height, "wall.height", height, f"courses of {self.height:g}")
 
     def levels(self, n_courses: int) -> Array:
-        """Levels of the bed joints of some courses, the bottom and the top ``(n_courses + 1,)`` [m]."""
+        """Levels of the bed joints of `n_courses` courses, including bottom and top, ``(n_courses + 1,)`` [m]."""
         return np.asarray(self.height * np.arange(n_courses + 1))
 
 
 def bonded_rows(
     width: float, length: float, n_courses: int, first_course: FirstCourse = "full", ends: Ends = "flush"
 ) -> Rows:
-    """Blocks of a running-bond panel's courses, from their nominal width and the panel's length [m].
+    """Courses of a running-bond panel, from the nominal block width and the panel's length [m].
 
     Parameters
     ----------
     first_course
         Whether the first course starts with a full or a half block.
     ends
-        ``"flush"``: half blocks close the courses; ``"toothed"``: courses that would start with a half
-        block leave it out at both ends.
+        ``"flush"``: courses are closed by half blocks; ``"toothed"``: courses that would start with a half
+        block omit it at both ends.
     """
     one_of("wall.first_course", first_course, get_args(FirstCourse))
     one_of("wall.ends", ends, get_args(Ends))
@@ -72,9 +72,9 @@ def bonded_rows(
 
 
 def pattern_rows(courses: Sequence[Sequence[float]]) -> Rows:
-    """Blocks of a wall's courses, bottom to top; each a list of widths in blocks, left to right from x = 0.
+    """Courses of a wall, bottom to top, each given as a list of widths in blocks, left to right from x = 0.
 
-    A negative width is an opening, both sides of which lie on the half-block lattice.
+    A negative width is an opening, whose two sides must lie on the half-block lattice.
     """
     if sum(len(course) for course in courses) > BLOCK_LIMIT:
         raise SceneError("wall.courses", f"has more than {BLOCK_LIMIT} blocks; make the wall smaller")
@@ -107,9 +107,9 @@ def pattern_rows(courses: Sequence[Sequence[float]]) -> Rows:
 
 
 def rectangles(rows: Rows, width: float, levels: Array) -> list[Array]:
-    """Blocks ``(4, 2)`` [m] of courses between levels ``(n + 1,)`` [m], on the lattice of half a width [m].
+    """Blocks ``(4, 2)`` [m] of courses between levels ``(n + 1,)`` [m], on a lattice of half the block width [m].
 
-    They are counter-clockwise, course by course, left to right.
+    Corners run counter-clockwise; blocks are listed course by course, left to right.
     """
     blocks: list[Array] = []
     for (left, right), low, high in zip(rows, levels[:-1], levels[1:], strict=True):

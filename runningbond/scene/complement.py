@@ -1,7 +1,7 @@
-"""What is orthogonal to some vectors, to the last bit the same on all machines.
+"""Orthogonal complement of some vectors, bitwise the same on all machines.
 
-A linear algebra library's singular vectors of one singular value are any mixture of each other, another one with
-every kernel of the library's; and what a wall of many blocks bears may turn on the last bit of a number.
+Singular vectors of a repeated singular value are an arbitrary basis of their space, which differs between the kernels
+of a linear algebra library; and the load that a wall of many blocks carries may depend on the last bit of a number.
 """
 
 import numpy as np
@@ -9,14 +9,14 @@ import numpy as np
 from .arrays import Array
 
 DEPENDENT = 1e-9
-"""Length, of the longest row's, below which a vector counts as a sum of others."""
+"""Length of what is left of a vector, relative to the longest row, up to which it counts as linearly dependent."""
 
 
 def complement(rows: Array) -> Array:
-    """Orthonormal vectors ``(m, d)`` on which rows ``(k, m)`` are zero.
+    """Orthonormal basis ``(m, d)`` of the vectors orthogonal to rows ``(k, m)``.
 
-    Gram and Schmidt's projections, twice each, of the rows and then of the coordinates; the longest that is left is
-    next each time, so that a coordinate that no row touches is one of the vectors.
+    Gram-Schmidt with reorthogonalisation, applied to the rows and then to the coordinate axes. The longest remaining
+    vector is always taken next, which makes every coordinate axis that no row involves one of the basis vectors.
     """
     longest = np.sqrt((rows**2).sum(axis=1)).max(initial=1e-300)
     k, m = rows.shape

@@ -1,6 +1,6 @@
-"""Blocks that may crack: each is cut in two along its vertical axis, and the cut becomes a joint of its own.
+"""Blocks that may crack: each is cut in two along its vertical axis, and the cut becomes a potential crack, a joint.
 
-The paper announces such inner interfaces on the blocks' axes of symmetry as its next step (Sec. 7).
+The paper names such inner interfaces on the blocks' axes of symmetry as future work (Sec. 7).
 """
 
 from collections.abc import Sequence
@@ -12,30 +12,31 @@ import shapely
 from .arrays import Array, Indices
 from .polygons import outer_corners, polygonal_parts
 
-SAME = 1e-6
-"""Part of a width by which a block may be wider and still count as of it."""
+WIDTH_TOLERANCE = 1e-6
+"""Relative excess over a width up to which a block still counts as of that width: rounding error."""
 
-NEAR = 0.01
-"""Distance of the axis from a corner, in widths of its block, within which that cracks there."""
+CORNER_SNAP = 0.01
+"""Distance between axis and nearest corner, in block widths, below which the block is cut at the corner."""
 
 
 def cut_in_half(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indices]:
-    """Cut polygons ``(n, 2)`` [m] at the vertical line through their centroids, but for those up to a width [m].
+    """Cut polygons ``(n, 2)`` [m] that are wider than `widest` [m] at the vertical line through their centroids.
 
-    What is not convex may fall into more than two pieces. Those left of the line come before those right of it, from
-    the bottom up, in the order of their blocks, and with them the block of each, ``(n_pieces,)``.
+    Returns the pieces, and the number of the block that each piece belongs to, ``(n_pieces,)``. Pieces follow the order
+    of their blocks, first those left of the line, then those right of it, each from the bottom up. A polygon that is
+    not convex may fall into more than two pieces.
     """
-    # What an opening leaves of a block may be as wide, and wider by the last bit of a sum of sizes.
-    least = widest * (1 + SAME)
+    # What an opening leaves of a block may have just this width, but exceed it by the rounding error of a sum.
+    least = widest * (1 + WIDTH_TOLERANCE)
     pieces = [_halves(polygon) if np.ptp(polygon[:, 0]) > least else [polygon] for polygon in polygons]
     return list(chain(*pieces)), np.repeat(np.arange(len(pieces)), [len(cut) for cut in pieces])
 
 
 def _halves(polygon: Array) -> list[Array]:
-    """Parts of a polygon on either side of its axis, which moves to a corner that is near it."""
+    """Parts of a polygon on either side of its vertical axis, which is moved to a corner if one is near."""
     whole, x = shapely.Polygon(polygon), polygon[:, 0]
     middle, corner = whole.centroid.x, float(x[np.argmin(np.abs(x - whole.centroid.x))])
-    middle = corner if abs(corner - middle) < NEAR * np.ptp(x) else middle
+    middle = corner if abs(corner - middle) < CORNER_SNAP * np.ptp(x) else middle
     (left, low), (right, high) = polygon.min(axis=0) - 1.0, polygon.max(axis=0) + 1.0
     halves = shapely.intersection(whole, shapely.box([left, middle], low, [middle, right], high))
     return [outer_corners(part) for half in halves for part in polygonal_parts(half)]

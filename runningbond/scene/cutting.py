@@ -1,4 +1,4 @@
-"""Openings cut out of a bonded wall: what becomes of its blocks."""
+"""Openings cut out of a bonded wall, and the blocks that remain."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,25 +15,25 @@ from .openings import Opening
 from .polygons import outer_corners, polygonal_parts
 
 SLIVER = 0.25
-"""Least length of a piece, in nominal block widths, and least height, in heights of its course."""
+"""Minimum length of a piece, in nominal block widths, and minimum height, relative to the height of its course."""
 
-EXACT = 1 - 1e-6
-"""Rounding that a piece of the least size may have."""
+ROUNDING_MARGIN = 1 - 1e-6
+"""Factor on minimum sizes that allows for rounding errors: a piece of just this size is accepted."""
 
 Pieces: TypeAlias = dict[int, list[Any]]
-"""What is left of blocks that are not whole, as polygons of shapely's, by their numbers."""
+"""Pieces that are left of each block that was cut, as Shapely polygons, by the number of the block."""
 
 
 def cut_openings(
     polygons: Sequence[Array], openings: Sequence[Opening], width: float
 ) -> tuple[list[Array], dict[int, str]]:
-    """Cut openings out of a bonded wall, and the beds of their lintels, which become its last blocks.
+    """Cut openings out of a bonded wall, and the space for their lintels, which become the wall's last blocks.
 
-    Blocks are cut along the opening's sides: they get shorter, lower or L-shaped, or fall in two. A piece shorter than
-    a quarter of the nominal block is no stone that a mason lays: it is made one with its neighbour in the course.
-    Where it has none, or a piece is lower than a quarter of its course, the opening is refused; it is to end at the
-    joint. What lies by a joint to within the lattice's rounding lies on it. An opening may end at the wall's side, as
-    a notch, or at its top, but not reach beyond. A lintel lies in the wall, whole.
+    Blocks are cut along the opening's sides: they become shorter, lower or L-shaped, or fall in two. No mason would lay
+    a piece shorter than a quarter of the nominal block, so such a piece is merged with its neighbour in the course. If
+    it has no neighbour, or if a piece is lower than a quarter of its course, the opening is refused; it should end at
+    the joint instead. A side that is off a joint by no more than the lattice tolerance is moved onto it. An opening
+    may end at the wall's side (a notch) or at its top, but not extend beyond. A lintel must lie entirely in the wall.
 
     Parameters
     ----------
@@ -45,14 +45,14 @@ def cut_openings(
     Returns
     -------
     list of (n, 2) float
-        What is left of the blocks [m], in their order, and then the lintels.
+        The remaining pieces of the blocks [m], in the order of the blocks, followed by the lintels.
     dict
-        Materials of lintels that have one of their own, by the numbers of the blocks.
+        Materials of the lintels that name one, by block number.
 
     Raises
     ------
     SceneError
-        As above, and for openings and lintels that overlap, and openings that cut nothing or leave nothing.
+        For the cases above, for openings and lintels that overlap, and for openings that cut no or all blocks.
     """
     wall = _Wall(np.array(polygons), width)
     holes = [wall.hole(opening.key, opening.low, opening.high) for opening in openings]
@@ -78,7 +78,7 @@ def cut_openings(
 
 @dataclass(frozen=True, eq=False)
 class _Hole:
-    """A rectangle that is cut out of the wall, from its lower left to its upper right corner ``(2,)`` [m]."""
+    """A rectangle to be cut out of the wall: its lower left and upper right corner ``(2,)`` [m]."""
 
     key: str
     low: Array
@@ -94,13 +94,13 @@ class _Hole:
         return shapely.box(*self.low, *self.high)
 
     def shared(self, low: Array, high: Array) -> Array:
-        """Areas shared with rectangles, from their corners ``(n, 2)`` [m], ``(n,)`` [m²]."""
+        """Areas ``(n,)`` [m²] shared with rectangles, given by their lower and upper corners ``(n, 2)`` [m]."""
         return np.asarray(np.maximum(np.minimum(self.high, high) - np.maximum(self.low, low), 0.0).prod(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
 class _Wall:
-    """A bonded wall: its blocks' corners ``(nb, 4, 2)`` [m] and their nominal width [m]."""
+    """A bonded wall: the corners of its blocks ``(nb, 4, 2)`` [m] and their nominal width [m]."""
 
     corners: Array
     width: float
@@ -118,7 +118,7 @@ class _Wall:
         return LATTICE_TOLERANCE * float((self.high - self.low).min())
 
     def hole(self, key: str, low: tuple[float, float], high: tuple[float, float]) -> _Hole:
-        """A rectangle whose sides lie on the joints that they are nearest to, if to within rounding."""
+        """A rectangle whose sides are moved onto the nearest joints if they are off them by rounding errors only."""
         lines = np.concatenate([self.low, self.high])
         snapped = []
         for corner in (low, high):
@@ -127,7 +127,7 @@ class _Wall:
         return _Hole(key, *snapped)
 
     def check(self, holes: list[_Hole]) -> None:
-        """Refuse rectangles that leave the wall, cut nothing or overlap, and lintels that do not lie in the wall."""
+        """Refuse rectangles that leave the wall, cut no block or overlap, and lintels partly outside the blocks."""
         (x0, y0), (x1, y1) = low, high = self.low.min(axis=0), self.high.max(axis=0)
         spans = f"x {x0:.4g} … {x1:.4g} m, y {y0:.4g} … {y1:.4g} m"
         for k, hole in enumerate(holes):
@@ -140,16 +140,16 @@ class _Wall:
             inside, whole = hole.shared(self.low, self.high).sum(), float(np.prod(hole.high - hole.low))
             if inside <= self.rounding**2:
                 raise SceneError(hole.key, f"cuts no block of the wall, which spans {spans}", reach)
-            if hole.key.endswith(".lintel") and inside < EXACT * whole:
+            if hole.key.endswith(".lintel") and inside < ROUNDING_MARGIN * whole:
                 raise SceneError(hole.key, "must lie whole in the wall; part of it is where there is no block", reach)
 
     def pieces(self, holes: list[_Hole]) -> Pieces:
-        """What holes leave of the blocks that they cut, slivers joined to their neighbours."""
+        """Remaining pieces of the blocks that holes cut, with slivers merged into their neighbours."""
         cut = np.flatnonzero(sum(hole.shared(self.low, self.high) for hole in holes) > self.rounding**2)
         rest = shapely.difference(shapely.polygons(self.corners[cut]), shapely.union_all([h.shape for h in holes]))
         pieces: Pieces = {int(i): polygonal_parts(shape) for i, shape in zip(cut, rest, strict=True)}
         slivers = [(i, part) for i, parts in pieces.items() for part in parts if self._is_sliver(i, part)]
-        for block, sliver in slivers:  # grows where two slivers make one
+        for block, sliver in slivers:  # the list grows if merging two slivers makes another one
             if any(part is sliver for part in pieces[block]):
                 neighbour, whole = self._join(pieces, block, sliver, holes)
                 slivers += [(neighbour, whole)] * self._is_sliver(neighbour, whole)
@@ -161,10 +161,10 @@ class _Wall:
     def _is_sliver(self, block: int, part: Any) -> bool:
         left, _, right, _ = part.bounds
         whole = self.high[block, 0] - self.low[block, 0]
-        return bool(right - left < EXACT * min(SLIVER * self.width, whole))
+        return bool(right - left < ROUNDING_MARGIN * min(SLIVER * self.width, whole))
 
     def _join(self, pieces: Pieces, block: int, sliver: Any, holes: list[_Hole]) -> tuple[int, Any]:
-        """Make a sliver one with the piece beside it in its course with which it shares most of a head joint."""
+        """Merge a sliver with the piece in its course that shares the longest head joint with it; return the result."""
         beside = [
             (shapely.length(shapely.intersection(sliver, other)), neighbour, other)
             for neighbour in (block - 1, block, block + 1)
@@ -183,12 +183,12 @@ class _Wall:
         return neighbour, whole
 
     def _refuse(self, block: int, part: Any, holes: list[_Hole]) -> None:
-        """Refuse a piece that is too low, or has a hole inside."""
+        """Refuse a piece that is too low or has a hole in it."""
         low, high = self.low[block, 1], self.high[block, 1]
         _, bottom, _, top = part.bounds
         if len(part.interiors):
             raise SceneError(_beside(part, holes).key, "lies inside one block; let it reach a joint")
-        if top - bottom < EXACT * SLIVER * (high - low):
+        if top - bottom < ROUNDING_MARGIN * SLIVER * (high - low):
             what = f"leaves a piece {top - bottom:.4g} m high of a course from y = {low:.6g} to {high:.6g} m"
             raise SceneError(_beside(part, holes).key, f"{what}; let it end at one of them, or leave a quarter")
 

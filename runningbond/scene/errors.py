@@ -1,4 +1,4 @@
-"""How bad input is refused: one line that names the key, its value and what would be right."""
+"""Errors for bad input: one line that names the key, its value and what would be right."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -7,15 +7,15 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
-LONGEST = 60
-"""Characters of a value that are shown."""
+MAX_VALUE_LENGTH = 60
+"""Number of characters above which a value is shortened in a message."""
 
-UNSEEN = 1e-9
-"""Coordinate, in sizes of the wall, that is told as zero: cosines of a right angle leave 6e-17."""
+ZERO_COORDINATE = 1e-9
+"""Coordinate, in sizes of the wall, below which messages show 0: the cosine of a right angle is computed as 6e-17."""
 
 
 class SceneError(ValueError):
-    """Input that describes no wall.
+    """Input that does not describe a valid wall.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class SceneError(ValueError):
     remedy
         What is wrong and what would be right.
     value
-        The value, where there is one.
+        The offending value, if there is one.
     """
 
     def __init__(self, key: str, remedy: str, value: object = None) -> None:
@@ -37,27 +37,27 @@ class SceneError(ValueError):
 
 
 def coordinate(value: float, size: float, digits: int = 4) -> str:
-    """A coordinate in so many digits, and as many more as it is farther from the origin than what lies there is large.
+    """A coordinate with `digits` digits, and one more for each power of ten by which it exceeds the size of the wall.
 
     Parameters
     ----------
     size
-        Of the wall or drawing [as the coordinate].
+        Size of the wall or drawing, in the unit of the coordinate.
     """
     far = abs(value) / size if size > 0 else 0.0
     more = math.floor(math.log10(far)) if 10 <= far < math.inf else 0
-    told = 0.0 if 0 < far < UNSEEN else value
+    told = 0.0 if 0 < far < ZERO_COORDINATE else value
     return f"{told + 0.0:.{min(digits + more, 17)}g}"
 
 
 def place(at: Sequence[float] | NDArray[np.float64], size: float, digits: int = 4) -> str:
-    """A point ``(2,)`` as messages tell it; see `coordinate`."""
+    """A point ``(2,)`` as text for messages; see `coordinate`."""
     return f"({', '.join(coordinate(float(x), size, digits) for x in at)})"
 
 
 @contextmanager
 def keys_of(table: str, default: str) -> Iterator[None]:
-    """Name keys after the table that they were read from, where an object names them after its usual one."""
+    """Rename keys in a `SceneError` from the default table to the table that the values were read from."""
     try:
         yield
     except SceneError as error:
@@ -67,9 +67,9 @@ def keys_of(table: str, default: str) -> Iterator[None]:
 
 
 def abbreviated(value: object) -> str:
-    """A value as messages show it, in a line that does not grow with what is in it."""
+    """A value as text for messages, shortened to one line of limited length."""
     try:
         text = " ".join(repr(value).split())
     except ValueError:  # Python refuses to print integers of thousands of digits
         return "(a number too long to print)"
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+    return text if len(text) <= MAX_VALUE_LENGTH else f"{text[: MAX_VALUE_LENGTH - 1]}…"

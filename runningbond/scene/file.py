@@ -1,4 +1,4 @@
-"""The scene file: TOML in, `Scene` or one clear line out."""
+"""Reading a scene file: from TOML to a `Scene`, or to an error of one line."""
 
 import math
 import os
@@ -19,28 +19,28 @@ from .ties import read_tie
 from .wall import Scene, build_scene
 
 RESERVED = ("block", "joint", "inner_joint", ANY, BEAM, GROUND)
-"""Names that no further material may have."""
+"""Names that are not allowed for materials of ``[materials]`` and ``[joints]``."""
 
 
-TWICE = ("Cannot overwrite", "Cannot mutate")
-"""What TOML's reader says of a key that is given again."""
+DUPLICATE_KEY = ("Cannot overwrite", "Cannot mutate")
+"""Starts of the messages with which Python's TOML reader refuses a key that is given twice."""
 
 
 def read_scene(path: str | Path) -> Scene:
-    """Read a scene file, in TOML; drawings that it names are looked up beside it.
+    """Read a scene file in TOML; paths of drawings and records in it are relative to its folder.
 
     Raises
     ------
     SceneError
-        For a file that is missing, is no TOML or describes no wall: one line that names the key,
-        the value and what would be right.
+        For a file that is missing, is not valid TOML or does not describe a wall: one line that names the
+        key, the value and what would be right.
     """
     path = path_of("path", path)
     return scene_from_dict(read_description(path), folder=path.parent, default_title=plain_stem(path))
 
 
 def read_description(path: Path) -> dict[str, Any]:
-    """The tables of a scene file as nested dictionaries, unchecked; errors as of `read_scene`."""
+    """The tables of a scene file as nested dictionaries, unchecked; raises the same errors as `read_scene`."""
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
@@ -48,19 +48,19 @@ def read_description(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise SceneError(str(path), "is not a scene file: it is not UTF-8 text") from error
     except (RecursionError, ValueError) as error:
-        twice = "; a key is given twice" if str(error).startswith(TWICE) else ""
+        twice = "; a key is given twice" if str(error).startswith(DUPLICATE_KEY) else ""
         raise SceneError(str(path), f"is not valid TOML: {error}{twice}") from error
 
 
 def plain_stem(path: Path) -> str:
-    """A file's name without its ending, as text: what is no UTF-8 in it is replaced."""
+    """A file's name without its suffix, as text in which bytes that are not UTF-8 are replaced."""
     return os.fsencode(path.stem).decode(errors="replace")
 
 
 def _title(text: str) -> str:
-    """A title in one line; what no picture can hold in one is refused."""
+    """A title as one line; characters that no picture can show in it are refused."""
     title = " ".join(text.split())
-    if any(letter < " " or letter in "\ufffe\uffff" for letter in title):  # XML knows neither
+    if any(letter < " " or letter in "\ufffe\uffff" for letter in title):  # none of them is allowed in XML
         raise SceneError("title", "must be a string without control characters", title)
     return title
 
@@ -71,16 +71,16 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     Parameters
     ----------
     content
-        The file as nested dictionaries. A joint's ``law``, and a load in place of its table, may be Python objects.
+        The file as nested dictionaries. A joint's ``law`` and loads may be Python objects instead of tables.
     folder
-        Where drawings are looked up.
+        Folder that paths of drawings and records are relative to.
     default_title
-        Title of a scene that has none.
+        Title if the file gives none.
 
     Raises
     ------
     SceneError
-        As `read_scene`.
+        As for `read_scene`.
     """
     if not isinstance(content, dict):
         raise SceneError("content", "must be a dictionary of the tables of a scene file", content)
@@ -89,7 +89,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     except SceneError:
         from .schema import misspelt
 
-        # Where a key is misspelt, what is missing or does not fit is told for want of it.
+        # A misspelt key may be the reason why another one is missing or does not fit, so it is reported first.
         found = misspelt(content) if Table.visits is None else None
         if found is not None:
             raise found from None
@@ -148,7 +148,7 @@ def _block_material(block: Table) -> BlockMaterial:
 
 
 def _material_name(table: Table) -> str:
-    """Name of a material: that of its table, without the one that holds it; it may have dots of its own."""
+    """Name of a material: the name of its table without that of the parent table; it may contain dots."""
     kind, _, name = table.name.partition(".")
     if kind != table.name and not name.strip():
         raise SceneError(table.name, "must have a name, by which [[assign]] knows it")

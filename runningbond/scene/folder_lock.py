@@ -1,4 +1,4 @@
-"""One process at a time in a folder, without leaving anything in it where the system locks folders."""
+"""Locks that let one process at a time use a folder; no file is left in it if the system can lock folders."""
 
 import atexit
 import os
@@ -13,7 +13,7 @@ from .errors import SceneError
 fcntl: Any
 try:
     import fcntl
-except ImportError:  # Windows, where a folder cannot be opened, and a file in it is locked instead
+except ImportError:  # Windows cannot open a folder, so a file in it is locked instead
     fcntl = None
 
 LOCK = ".runningbond.lock"
@@ -23,15 +23,15 @@ _claims: dict[Path, int] = {}
 
 
 def claim(folder: Path, key: str) -> None:
-    """Have a folder for this process alone until it ends, in which it writes again and again.
+    """Reserve a folder for this process until it ends, as the only one that writes into it.
 
-    The lock is a file among the temporary ones, so that who reads the folder need not wait, and where there can be none
-    nobody is kept out.
+    The lock is on a file in the system's temporary folder, so that processes that only read the folder need not wait.
+    On Windows, and if this file cannot be made or locked, other processes are not kept out.
 
     Raises
     ------
     SceneError
-        Where another process of this machine has it; under a key, the name of an option.
+        If another process on this machine has claimed the folder; `key` is the name of the option to be reported.
     """
     at = folder.stat()
     path = Path(gettempdir()) / f"runningbond-{at.st_dev:x}-{at.st_ino:x}.lock"
@@ -39,7 +39,7 @@ def claim(folder: Path, key: str) -> None:
         return
     with suppress(OSError):
         handle = _locked_now(path, key, folder)
-        while os.fstat(handle).st_nlink == 0:  # who had it before has just taken the file away
+        while os.fstat(handle).st_nlink == 0:  # its previous owner has just deleted the file
             os.close(handle)
             handle = _locked_now(path, key, folder)
         _claims[path] = handle
@@ -47,7 +47,7 @@ def claim(folder: Path, key: str) -> None:
 
 
 def _locked_now(path: Path, key: str, folder: Path) -> int:
-    """A file, locked by this process; refused where another one has it."""
+    """Open and lock a file without waiting; raises a `SceneError` if another process has locked it."""
     handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -59,18 +59,18 @@ def _locked_now(path: Path, key: str, folder: Path) -> int:
 
 
 def _give_back(path: Path, owner: int) -> None:
-    """Take a lock's file away, if this is the process that made it and no child of it."""
+    """Delete a lock's file if this is the process that made it, not a child of that process."""
     if os.getpid() == owner:
         path.unlink(missing_ok=True)
 
 
 @contextmanager
 def locked(folder: Path, *, reading: bool = False) -> Iterator[None]:
-    """Wait until no other process holds a folder, and hold it.
+    """Wait until no other process has locked a folder, and lock it.
 
-    The lock lies on the folder itself, or else on a file in it, and ends with its holder, however that comes about. A
-    file system that knows no locks gives none; what is written atomically is so without one. `reading` lets other
-    readers in where folders are locked.
+    The lock is on the folder itself or, on Windows, on a file in it; it ends with its process, even if that crashes.
+    On a file system without locks nothing is locked; atomic writes are safe without a lock. With `reading`, other
+    readers are let in, provided that the folder itself is locked.
     """
     if fcntl is None:
         with _file_locked(folder / LOCK):

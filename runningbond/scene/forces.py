@@ -1,4 +1,4 @@
-"""What loads do: forces on the blocks of a scene, and the arrows that stand for them in drawings."""
+"""Forces of loads on the blocks of a scene, and the arrows that represent them in drawings."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Forces:
-    """What loads do to the blocks of a scene.
+    """Forces and moments of loads on the blocks of a scene.
 
     Parameters
     ----------
     acceleration : (nb, 2) float
-        Force on each block per mass [m/s²].
+        Force on each block per unit mass [m/s²].
     moment : (nb,) float
         Moment on each block [N m], counter-clockwise.
     block : (n,) int
-        Blocks with a force at a point.
+        Block that each point force acts on.
     at, force : (n, 2) float
-        Those points [m] and forces [N].
+        Points of action [m] and point forces [N].
     """
 
     acceleration: Array
@@ -51,9 +51,9 @@ class Forces:
         at: ArrayLike = (),
         force: ArrayLike = (),
     ) -> "Forces":
-        """Forces on a scene's blocks; an acceleration or a moment may be one for all of them.
+        """Forces on a scene's blocks; a single acceleration or moment applies to all of them.
 
-        Blocks that the scene has not, and points that are nowhere, are refused by a `SceneError`.
+        Raises a `SceneError` for block numbers that the scene does not have and for points that are not finite.
         """
         nb, block = len(scene.blocks), _numbers(block, len(scene.blocks))
         at, force = (np.broadcast_to(np.reshape(x, (-1, 2)), (len(block), 2)) for x in (at, force))
@@ -66,7 +66,7 @@ class Forces:
         return Forces(self.acceleration + other.acceleration, self.moment + other.moment, *joined)
 
     def resultants(self, scene: "Scene") -> Array:
-        """Forces on the blocks and moments about their centroids, ``(nb, 3)`` [N, N, N m]."""
+        """Resultant forces on the blocks and moments about their centroids, ``(nb, 3)`` [N, N, N m]."""
         arm = self.at - scene.blocks.centroid[self.block]
         moment = arm[:, 0] * self.force[:, 1] - arm[:, 1] * self.force[:, 0]
         result = np.zeros((len(scene.blocks), 3))
@@ -75,17 +75,17 @@ class Forces:
 
     @property
     def on_mass_alone(self) -> bool:
-        """Whether they are proportional to mass: no force at a point and no moment."""
+        """Whether all forces are proportional to mass: no point force and no moment."""
         return len(self.block) == 0 and not self.moment.any()
 
     @property
     def at_points_alone(self) -> bool:
-        """Whether they act at points only."""
+        """Whether all forces are point forces: no acceleration and no moment."""
         return not self.acceleration.any() and not self.moment.any()
 
 
 def _numbers(block: ArrayLike, count: int) -> Indices:
-    """Numbers of blocks ``(n,)``; others than those of `count` blocks, as a mask's, are refused."""
+    """Block numbers ``(n,)``; anything else, such as a mask or a number not below `count`, is refused."""
     numbers = np.reshape(block, -1)
     if len(numbers) and not (numbers.dtype.kind in "iu" and numbers.min() >= 0 and numbers.max() < count):
         raise SceneError("load.live.block", f"must be numbers of blocks, 0 … {count - 1}", block)
@@ -94,16 +94,16 @@ def _numbers(block: ArrayLike, count: int) -> Indices:
 
 @dataclass(frozen=True, eq=False)
 class Arrow:
-    """An arrow that stands for a load in drawings.
+    """An arrow that represents a load in drawings.
 
     Parameters
     ----------
     direction : (2,) float
         Unit vector.
     at : (2,) float or None
-        Where its tip is [m]; None is a row of arrows along the side of the wall that the load pushes.
+        Position of its tip [m]; None is a row of arrows along the side of the wall that the load pushes.
     block : (n,) int
-        Blocks with which the tip moves.
+        Blocks that the tip moves with.
     """
 
     direction: Array

@@ -1,7 +1,7 @@
-"""Motion of the ground: a record or a pulse, which the wall is to follow through time.
+"""Motion of the ground: a record or a pulse, for a dynamic analysis in time.
 
-Between samples an acceleration or a velocity changes evenly, and a displacement as a cubic spline. Its velocity is
-what matters: the wall sees the ground's change of velocity over each of its time steps, which nothing of it is lost in.
+Between samples, accelerations and velocities are interpolated linearly, displacements by a cubic spline. The analysis
+uses the ground's velocity: whatever the time step, the wall receives the exact change of velocity over each interval.
 """
 
 import math
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 KEY = "load.history"
 
 STANDARD_GRAVITY = 9.80665
-"""One g [m/s²]."""
+"""Standard acceleration of gravity, 1 g [m/s²]."""
 
 QUANTITIES = {"acceleration": 1.0, "g": STANDARD_GRAVITY, "velocity": 1.0, "displacement": 1.0}
-"""What a record may be of, and its unit in m/s², m/s or m."""
+"""Quantities that a record may hold, and the factor that converts each to m/s², m/s or m."""
 
 PULSES = ("sine", "half-sine", "ricker", "ramp")
 
-SAMPLES = 1000
-"""Samples of a pulse in its period: between them it is off by 5e-6 of its amplitude."""
+SAMPLES_PER_PERIOD = 1000
+"""Samples per period of a pulse; linear interpolation between them errs by 5e-6 of the amplitude."""
 
 INTERVALS = 200
-"""Parts of the period over which the acceleration of a pulse may stand for its mean."""
+"""Intervals per period of a pulse; within each, the acceleration may be replaced by its mean."""
 
 SECONDS = Range(above=0.0, most=1e4)
 FACTOR = Range(least=-1e6, most=1e6)
@@ -45,24 +45,24 @@ FACTOR = Range(least=-1e6, most=1e6)
 
 @dataclass(frozen=True, eq=False)
 class History(Action):
-    """Motion of the ground; as a live load at λ = 1, the inertia of the blocks when it is largest.
+    """Motion of the ground; as a live load at λ = 1, the inertia forces of the blocks at the peak acceleration.
 
     Parameters
     ----------
     time : (n,) float
         Times of the samples [s], from 0.
     values : (n, 2) float
-        Horizontal and vertical motion there, in the quantity's unit.
+        Horizontal and vertical motion at these times, in the unit of the quantity.
     quantity
         ``"acceleration"`` [m/s²], ``"g"``, ``"velocity"`` [m/s] or ``"displacement"`` [m].
     scale
-        Factor on the record; λ multiplies it.
+        Factor on the record, which λ multiplies further.
     source
-        File or pulse that it was made of.
+        Name of the file or kind of the pulse.
     holds
-        Whether the last acceleration stays on.
+        Whether the last acceleration continues after the end of the record.
     interval
-        Time [s] over which an acceleration may stand for its mean; where none is given half the shortest step.
+        Time [s] over which the acceleration may be replaced by its mean; None is half the shortest sampling step.
     """
 
     time: Array
@@ -90,17 +90,17 @@ class History(Action):
 
     @property
     def duration(self) -> float:
-        """Time until the record ends [s]."""
+        """Duration of the record [s]."""
         return float(self.time[-1])
 
     @cached_property
     def resolution(self) -> float:
-        """As `interval`; a motion asks for it every few steps, and a record may have many samples."""
+        """`interval` or its default [s]; cached, as it is needed every few steps and a record may have many samples."""
         return self.interval or float(np.diff(self.time).min() / 2)
 
     @cached_property
     def _velocity(self) -> Any:
-        from scipy.interpolate import CubicSpline, make_interp_spline  # which no command without a history needs
+        from scipy.interpolate import CubicSpline, make_interp_spline  # slow to import, only needed here
 
         values = self.scale * QUANTITIES[self.quantity] * self.values
         if self.quantity == "displacement":
@@ -114,18 +114,19 @@ class History(Action):
 
     @property
     def has_jumps(self) -> bool:
-        """Whether the ground's velocity jumps as the record begins or ends."""
+        """Whether the ground's velocity may jump when the record begins or ends."""
         return self.quantity in ("velocity", "displacement")
 
     @cached_property
     def jump(self) -> float:
-        """Velocity that the ground has at once as the record begins [m/s]."""
+        """Magnitude of the jump in the ground's velocity when the record begins [m/s]."""
         return float(np.hypot(*self._velocity(0.0))) if self.has_jumps else 0.0
 
     def velocity(self, time: Array | float) -> Array:
-        """Velocity of the ground ``(…, 2)`` at some times [s], which is at rest before the record [m/s].
+        """Velocity of the ground ``(…, 2)`` [m/s] at some times [s]; the ground is at rest before the record.
 
-        Afterwards it keeps its last velocity, or of displacements the last of these, and is at rest.
+        After the record the velocity stays constant, or grows with the last acceleration if that `holds`; after a
+        record of displacements the ground stays at the last one.
         """
         time = np.asarray(time, dtype=float)
         begun, over = (time > 0)[..., None], (time > self.duration)[..., None]
@@ -138,31 +139,31 @@ class History(Action):
         return np.asarray(now + beyond)
 
     def acceleration(self, time: Array | float) -> Array:
-        """Acceleration of the ground ``(…, 2)`` at some times [m/s²]."""
+        """Acceleration of the ground ``(…, 2)`` [m/s²] at some times [s]."""
         time = np.asarray(time, dtype=float)
         there = (time >= 0) & ((time <= self.duration) | self.holds)
         return np.asarray(np.where(there[..., None], self._acceleration(np.clip(time, 0.0, self.duration)), 0.0))
 
     @cached_property
     def peak(self) -> Array:
-        """Acceleration ``(2,)`` at the sample where it is largest [m/s²]."""
+        """Acceleration ``(2,)`` [m/s²] at the sample where it is largest."""
         every = self.acceleration(self.time)
         return np.asarray(every[np.hypot(*every.T).argmax()])
 
     def forces(self, scene: "Scene") -> Forces:
-        """Inertia of the blocks in the frame of the ground, where its acceleration is largest."""
+        """Inertia forces of the blocks in the frame of the ground, at the peak acceleration."""
         return Forces.on(scene, -self.peak)
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse what is not followed through time: walls on pins, and beams that are driven or held."""
-        if len(scene.pins):  # of a beam that is held later as well, one from the first
+        """Refuse walls that cannot be analysed in time: those on pins, and those with a beam that is held."""
+        if len(scene.pins):  # a beam with late pins has one from the start too
             name = "support.kind" if scene.beam is None else "beam.condition"
             raise SceneError(
                 name, "does not go with load.history, which moves a wall on its ground that is free on top"
             )
 
     def note(self, multiplier: float) -> str:
-        """The largest acceleration, and the jump that the record begins with."""
+        """The peak acceleration, and the velocity jump with which the record begins."""
         peak, jump = (abs(multiplier) * x for x in (float(np.hypot(*self.peak)) / STANDARD_GRAVITY, self.jump))
         told = f"the ground is accelerated by up to {peak:.4g} g"
         return told if not jump else f"{told}, and has {jump:.4g} m/s at once as the record begins"
@@ -171,10 +172,10 @@ class History(Action):
 def pulse(kind: str, amplitude: float, period: float) -> tuple[Array, Array]:
     """Times ``(n,)`` [s] and values ``(n, 2)`` of a horizontal pulse.
 
-    Half a sine lasts half its period, a Ricker wavelet three of them, all others one.
+    A half-sine lasts half a period, a Ricker wavelet three periods, all others one.
     """
     span = {"half-sine": 0.5, "ricker": 3.0}.get(kind, 1.0)
-    share = np.linspace(0.0, span, round(span * SAMPLES) + 1)
+    share = np.linspace(0.0, span, round(span * SAMPLES_PER_PERIOD) + 1)
     if kind == "ramp":
         shape = share = np.array([0.0, 1.0])
     elif kind == "ricker":
@@ -186,7 +187,7 @@ def pulse(kind: str, amplitude: float, period: float) -> tuple[Array, Array]:
 
 
 def read_history(table: Table, folder: Path) -> History:
-    """The motion of the ground that a table describes; files are looked up in a folder."""
+    """Read the motion of the ground from a table of a scene file; paths of records are relative to `folder`."""
     if ("file" in table) == ("pulse" in table):
         raise SceneError(table.name, "must have one of file and pulse")
     scale = table.optional_number("scale", FACTOR)
@@ -213,7 +214,7 @@ def read_history(table: Table, folder: Path) -> History:
 
 
 def _required(table: Table, quantity: str | None) -> str:
-    """The quantity, which is the unit."""
+    """The quantity; refused if it is missing, because it determines the unit."""
     if quantity is None:
         units = '"acceleration" (m/s²), "g", "velocity" (m/s) or "displacement" (m)'
         raise SceneError(table.key("quantity"), f"is missing; without it the record has no unit: {units}")

@@ -1,7 +1,7 @@
-"""Loads: dead ones that are always there, and live ones that λ multiplies.
+"""Loads: dead loads, which are constant, and live loads, which λ multiplies.
 
-A kind of load is one class: what it asks of a scene, the forces that it puts on its blocks, and how a file says
-it (`KINDS`). One of a user's own is a subclass of `Action` too, and an object of it stands where a file has a table.
+Each kind of load is a class that defines its requirements on a scene, its forces on the blocks, and how it is read from
+a file (`KINDS`). Users can add kinds as subclasses of `Action`, and pass objects of them in place of a file's table.
 """
 
 from collections.abc import Sequence
@@ -27,11 +27,11 @@ class Load:
     Parameters
     ----------
     gravity
-        Acceleration [m/s²] that gives the blocks their weight, a dead load.
+        Gravitational acceleration [m/s²]; the weight of the blocks is a dead load.
     live
-        Loads that λ multiplies, all of them together. One alone may be given as it is.
+        Loads that λ multiplies, all by the same factor. A single load may be given without a tuple.
     dead
-        Loads beside the weight of the blocks that λ does not multiply.
+        Loads that λ does not multiply, in addition to the weight of the blocks.
     """
 
     gravity: tuple[float, float] = (0.0, -9.81)
@@ -48,7 +48,7 @@ class Load:
             object.__setattr__(self, name, loads)
 
     def named(self) -> list[tuple[str, Action]]:
-        """Each load with the key that a file has it under."""
+        """All loads, each with its key in a scene file."""
         groups = (("load.live", self.live), ("load.dead", self.dead))
         named: list[tuple[str, Action]] = []
         for name, loads in groups:
@@ -68,18 +68,18 @@ KINDS: dict[str, type[Action]] = {
     "moment": Moment,
     "settlement": Settlement,
 }
-"""Kinds of loads, by the names that scene files have for them."""
+"""Kinds of loads, by their names in scene files."""
 
 
 DEAD_KINDS = [kind for kind in KINDS if kind not in ("tilt", "settlement")]
-"""Kinds of loads that λ need not multiply."""
+"""Kinds of loads that may be dead loads."""
 
 
 def read_load(table: Table, folder: Path, *, driven: bool = False) -> Load:
-    """The loads of a file; in Python an object may stand in place of the table of one.
+    """Read the loads of a scene file; in Python, objects may be given in place of tables.
 
-    Without a live one only where the wall is driven otherwise, by its beam or by its ground, whose record is looked up
-    in a folder.
+    A live load may be missing only if the wall is driven by its beam (`driven`) or by the motion of its ground, whose
+    record has a path relative to `folder`.
     """
     if isinstance(table.peek("gravity"), (list, tuple)):
         gravity = table.vector("gravity")

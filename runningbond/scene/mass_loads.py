@@ -1,4 +1,4 @@
-"""Loads in proportion to mass: a push sideways, a tilt of the ground, an acceleration."""
+"""Loads proportional to mass: a lateral load, a tilt of the ground, an acceleration."""
 
 import math
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 SIDES = {"right": (1.0, 0.0), "left": (-1.0, 0.0)}
-LEVEL = 1e-6
-"""Cosine between gravity and the ground that is none."""
+PERPENDICULAR_COSINE = 1e-6
+"""Cosine of the angle between gravity and a direction up to which they count as perpendicular."""
 
 
 @dataclass(frozen=True)
 class Lateral(Action):
-    """Each block pushed by its own weight along a direction, made a unit vector; λ is the ratio of push to weight."""
+    """A force on each block along a direction, kept as a unit vector; λ is the ratio of this force to the weight."""
 
     direction: tuple[float, float] = (1.0, 0.0)
 
@@ -31,19 +31,19 @@ class Lateral(Action):
         object.__setattr__(self, "direction", (x / length, y / length))
 
     def forces(self, scene: "Scene") -> Forces:
-        """The weight of each block, along the direction."""
+        """A force equal to its weight on each block, along the direction."""
         gravity = float(np.hypot(*scene.load.gravity))
         return Forces.on(scene, (gravity * self.direction[0], gravity * self.direction[1]))
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse blocks without weight."""
+        """Refuse a scene whose blocks have no weight."""
         if not any(scene.load.gravity):
             what = "leaves a lateral load nothing to push with; give the blocks a weight"
             raise SceneError("load.gravity", what, 0.0)
 
     @classmethod
     def read(cls, table: Table) -> "Lateral":
-        """The load of a table with a direction, to the right unless it says another."""
+        """Read the load from a table of a scene file; its direction is to the right by default."""
         direction = table.peek("direction")
         if isinstance(direction, str) and direction not in SIDES:
             raise SceneError(table.key("direction"), 'must be "right", "left" or a vector [x, y]', direction)
@@ -53,30 +53,31 @@ class Lateral(Action):
 
 @dataclass(frozen=True)
 class Tilt(Lateral):
-    """The ground turned under the wall, down to the side of the direction: λ is the tangent of its angle.
+    """A tilt of the ground under the wall, down towards the direction: λ is the tangent of the tilt angle.
 
-    Along the ground the weight of each block counts λ times, and across it once. Of a wall turned by α both are less
-    by cos α, which matters only where joints have a strength, or other loads act, that does not grow with the weight.
+    The model applies λ times the weight of each block along the ground and the full weight normal to it. In a wall
+    tilted by α both are smaller by the factor cos α. This matters only if joint strengths or other loads do not scale
+    with the weight.
     """
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a direction that is not along the ground, across the weight: λ would be the tangent of no angle."""
+        """Refuse a direction not perpendicular to gravity, for which λ would not be the tangent of a tilt angle."""
         super().check(scene, key)
         weight = np.array(scene.load.gravity)
-        if abs(weight @ self.direction) > LEVEL * np.hypot(*weight):
+        if abs(weight @ self.direction) > PERPENDICULAR_COSINE * np.hypot(*weight):
             remedy = (
                 f"must be across gravity, along the ground; to the right that is [{-weight[1]:.4g}, {weight[0]:.4g}]"
             )
             raise SceneError(f"{key}.direction", remedy, np.round(self.direction, 6).tolist())
 
     def note(self, multiplier: float) -> str:
-        """The angle in degrees."""
+        """The tilt angle in degrees."""
         return f"the ground is tilted by {math.degrees(math.atan(multiplier)):.4g}°"
 
 
 @dataclass(frozen=True)
 class Body(Action):
-    """An acceleration [m/s²] of all blocks."""
+    """A force per unit mass [m/s²] on all blocks."""
 
     acceleration: tuple[float, float]
 
@@ -84,5 +85,5 @@ class Body(Action):
         object.__setattr__(self, "acceleration", nonzero_vector("load.live.acceleration", self.acceleration))
 
     def forces(self, scene: "Scene") -> Forces:
-        """The same force per mass on each block."""
+        """The same force per unit mass on each block."""
         return Forces.on(scene, self.acceleration)

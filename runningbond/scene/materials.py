@@ -8,39 +8,39 @@ from .errors import SceneError
 from .ranges import ABOVE_ZERO, NotNegative, Positive, Range, check_numbers, one_of
 
 Softening: TypeAlias = Literal["linear", "exponential"]
-"""How strength falls with a jump: on a straight line, or exponentially (Lourenço & Rots 1997)."""
+"""Decrease of strength with the displacement jump: linear, or exponential (Lourenço & Rots 1997)."""
 
 CAP_SHEAR = 9.0
-"""C_ss of the cap on pressures where none is given."""
+"""Default of C_ss, the shear coefficient of the compression cap."""
 
 LEAST_FRICTION, MOST_FRICTION = 1e-6, 1e6
-"""Least tan φ that is not 0: what is smaller is lost in a linear program's tolerance, cohesion / tan φ with it.
+"""Smallest nonzero and largest tan φ. Below, tan φ and cohesion / tan φ are lost in a linear program's tolerance.
 
-The largest is where normal forces that decide are lost beside the shear that they allow.
+Above, decisive normal forces are lost beside the shear forces that they permit.
 """
 
 
 @dataclass(frozen=True)
 class BlockMaterial:
-    """What blocks are made of.
+    """Material of blocks.
 
     Parameters
     ----------
     density
         Mass density [kg/m³].
     young
-        Young's modulus [Pa]; None where the scene leaves it out. Rigid models do not read it.
+        Young's modulus [Pa]; None if the scene does not give it. Rigid models do not use it.
     poisson
         Poisson's ratio.
     thickness
-        Out-of-plane thickness of its blocks [m]; None is that of the wall.
+        Out-of-plane thickness of its blocks [m]; None is the thickness of the wall.
     name
-        What `assign` calls it in a scene file.
+        Name of the material in a scene file, which `assign` refers to.
 
     Raises
     ------
     SceneError
-        For numbers that no material has.
+        For numbers outside their physical range.
     """
 
     density: Positive
@@ -55,7 +55,7 @@ class BlockMaterial:
 
 @dataclass(frozen=True)
 class Mortar:
-    """A layer of mortar, from which joint stiffness follows.
+    """A layer of mortar, from which the stiffness of a joint is computed.
 
     Parameters
     ----------
@@ -85,17 +85,17 @@ class Stiffness:
 
 @dataclass(frozen=True)
 class Closure:
-    """How a joint closes: its normal stiffness grows with the pressure p on it, dp/dδ = k_n + growth · p.
+    """Closure law of a joint: its normal stiffness grows with the pressure p on it, dp/dδ = k_n + growth · p.
 
-    The semi-logarithmic law of rock joints (Evans, Kohl, Hopkirk & Rybach 1992), which a dry joint's stiffness under
-    several pressures gives as a straight line.
+    This is the semi-logarithmic law of rock joints (Evans, Kohl, Hopkirk & Rybach 1992). Its parameters follow from a
+    straight line through the stiffness of a dry joint measured at several pressures.
 
     Parameters
     ----------
     growth
-        Stiffness per pressure [1/m]; `Stiffness.normal` is that without pressure.
+        Increase of stiffness per pressure [1/m]; `Stiffness.normal` is the stiffness at zero pressure.
     stiffest
-        Stiffness at which the growth ends [Pa/m].
+        Stiffness above which it stays constant [Pa/m].
     """
 
     growth: Positive
@@ -107,7 +107,7 @@ class Closure:
 
 @dataclass(frozen=True)
 class JointMaterial:
-    """Mohr–Coulomb joint: ``|τ| ≤ cohesion − σ friction``, ``σ ≤ tensile_strength``, and it may crush and close.
+    """Mohr–Coulomb joint: ``|τ| ≤ cohesion − σ friction``, ``σ ≤ tensile_strength``, and optional crushing and closure.
 
     Parameters
     ----------
@@ -116,35 +116,35 @@ class JointMaterial:
     cohesion
         Shear strength at zero normal stress [Pa].
     tensile_strength
-        Tension cut-off [Pa], at most the apex ``cohesion / friction`` of the cone; None is the apex, and goes with it
-        when a copy of the material is given another friction or cohesion.
+        Tension cut-off [Pa], at most the apex ``cohesion / friction`` of the cone; None is the apex, also that of
+        copies of the material with another friction or cohesion.
     elasticity
-        Mortar or stiffness; None where the scene leaves it out. Limit analysis does not read it.
+        Mortar or stiffness; None if the scene does not give it. Limit analysis does not use it.
     inset
-        Distance by which the contact points are moved in from the joint ends [m].
+        Distance by which the contact points are moved inwards from the joint ends [m].
     fracture_energy_1, fracture_energy_2
-        Fracture energies in opening and in shear [J/m²]; None is perfectly plastic.
+        Fracture energies of modes I (opening) and II (shear) [J/m²]; None is perfectly plastic.
     softening
-        The branch along which these are spent.
+        Shape of the softening branch, ``"linear"`` or ``"exponential"``.
     compressive_strength, cap_shear
-        f_m [Pa] and C_ss of the cap on pressures, ``p² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
-        eq. 19, with C_nn = 1, C_n = 0); None is a joint that never crushes.
+        f_m [Pa] and C_ss of the compression cap, ``p² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
+        eq. 19, with C_nn = 1, C_n = 0); without a compressive strength (None) the joint never crushes.
     compressive_fracture_energy
-        Energy of crushing, all that is not elastic [J/m²]; None is perfectly plastic.
+        Energy dissipated by crushing, without the elastic part [J/m²]; None is perfectly plastic.
     peak_closure
-        Plastic closure [m] at which a joint that begins to crush at a third of its strength has come to it (Lourenço &
-        Rots 1997, κ_p); 0 is elastic up to the strength.
+        Plastic closure [m] at which the joint reaches its compressive strength, having begun to crush at a third of it
+        (Lourenço & Rots 1997, κ_p); 0 is elastic up to the strength.
     closure
-        How the normal stiffness grows with pressure; None is constant.
+        Growth of the normal stiffness with pressure; None is a constant stiffness.
     law
-        A law of one's own (`runningbond.joints.Law`); None is Coulomb's, softening where there is a fracture energy.
+        A user-defined law (`runningbond.joints.Law`); None is Coulomb's, with softening if a fracture energy is given.
     name
-        What `assign` calls it in a scene file.
+        Name of the material in a scene file, which `assign` refers to.
 
     Raises
     ------
     SceneError
-        For numbers that no joint has, alone or together.
+        For numbers outside their physical range, and for numbers that contradict each other.
     """
 
     friction: NotNegative
@@ -196,7 +196,7 @@ class JointMaterial:
 
     @property
     def energy_to_peak(self) -> float:
-        """Energy of crushing up to `peak_closure` [J/m²]."""
+        """Energy dissipated by crushing up to `peak_closure` [J/m²]."""
         return (1 / 3 + math.pi / 6) * (self.compressive_strength or 0.0) * self.peak_closure
 
     def _check_closure(self) -> None:
@@ -210,17 +210,17 @@ class JointMaterial:
 
     @property
     def is_bonded(self) -> bool:
-        """Whether it can bear anything without pressure."""
+        """Whether the joint has a tensile or shear strength at zero pressure."""
         return self.tension > 0.0 or self.cohesion > 0.0
 
     @property
     def softens(self) -> bool:
-        """Whether it loses with its opening and slip what it can bear beyond friction."""
+        """Whether opening and slip reduce the cohesion and tensile strength of the joint."""
         return self.fracture_energy_1 is not None and self.is_bonded
 
     @property
     def tension(self) -> float:
-        """Tensile strength [Pa]: the one given, or the apex of the cone."""
+        """Tensile strength [Pa]: the one given, at most the apex of the cone, or else the apex."""
         if self.tensile_strength is not None:
             return min(self.tensile_strength, self._apex)
         return self._apex if self.friction > 0.0 else 0.0
@@ -231,7 +231,7 @@ class JointMaterial:
 
 
 def check_friction(key: str, friction: float, value: float) -> None:
-    """Refuse a tan φ too small to tell from none, or too large to tell from no slip; the value is what was given."""
+    """Refuse a tan φ that solvers cannot tell from zero or from infinity; `value` is what the user has given."""
     if friction > MOST_FRICTION:
         raise SceneError(key, f"must be such that tan φ ≤ {MOST_FRICTION:g}, with which no joint slides", value)
     if 0.0 < friction < LEAST_FRICTION:

@@ -1,4 +1,4 @@
-"""Openings in a bonded wall and the lintels over them, as a file says them."""
+"""Openings in a bonded wall and the lintels over them, as a scene file describes them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ class Lintel:
     Parameters
     ----------
     height, bearing
-        Its height and how far it reaches into the wall on either side [m].
+        Height of the lintel and its bearing length in the wall on either side [m].
     material
-        Name of its material; None is that of the other blocks.
+        Name of the lintel's material; None for the material of the other blocks.
     """
 
     height: Positive
@@ -32,11 +32,11 @@ class Opening:
     Parameters
     ----------
     key
-        What a file has it under.
+        Key of the opening in the scene file, for error messages.
     low, high
         Lower left and upper right corner [m].
     lintel
-        What spans it; None where nothing does.
+        Lintel that spans the opening; None if nothing does.
     """
 
     key: str
@@ -46,7 +46,7 @@ class Opening:
 
 
 def read_openings(wall: Table, block_names: Sequence[str]) -> list[Opening]:
-    """Openings of the table of a wall, whose lintels are of materials of some names."""
+    """Read the openings of a wall's table; the materials of lintels are chosen from `block_names`."""
     return [_read_opening(table, block_names) for table in wall.list_of_tables("opening")]
 
 

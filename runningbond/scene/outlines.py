@@ -1,4 +1,4 @@
-"""The outlines of a wall's blocks, from what a scene file says under ``[wall]``."""
+"""The outlines of a wall's blocks, read from the ``[wall]`` table of a scene file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,34 +15,34 @@ from .openings import read_openings
 from .ranges import ABOVE_ZERO
 from .table import Table
 
-ALIKE = 1e-9
-"""How far heights of courses that are alike may differ, and their sum from the wall's height, relatively."""
+EQUAL = 1e-9
+"""Relative tolerance for equal course heights, and for their sum against the given height of the wall."""
 
 
-WHOLE = 0.75
-"""Width of a bonded wall's block, in nominal ones, up to which it stays whole where others may split."""
+UNCRACKED_WIDTH = 0.75
+"""Width, as a share of the nominal block width, up to which a block of a bonded wall gets no potential crack inside."""
 
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """What a scene file says of its blocks.
+    """The block geometry that a scene file describes.
 
     Parameters
     ----------
     polygons : list of (n, 2) float
         Blocks of the wall [m], counter-clockwise.
     grounds : list of (n, 2) float
-        Pieces of the ground [m]; none where the support is to make one.
+        Pieces of the ground [m]; empty if the support is to generate one.
     bond
-        Nominal block, where the wall is bonded in courses that are alike.
+        Nominal block, if the wall is bonded in courses of equal height.
     whole_up_to
-        Width up to which blocks stay whole where others may split [m].
+        Width [m] up to which blocks stay whole if blocks may crack (``inner_joint``).
     layers
-        Layer of each block in a drawing; none of other walls.
+        Layer of each block in a drawing; empty for other walls.
     materials
-        Names of the materials of single blocks, by their numbers.
+        Names of the materials of individual blocks, by block number.
     notes
-        What was left out or mended of a drawing, a line each.
+        What was left out of a drawing or repaired in it, one line each.
     """
 
     polygons: list[Array]
@@ -55,21 +55,21 @@ class Outlines:
 
 
 def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequence[str]) -> Outlines:
-    """The outlines that the table of a wall describes.
+    """Read the outlines that the table of a wall describes.
 
     Parameters
     ----------
     folder
-        Where drawings are looked up.
+        Folder that paths of drawings are relative to.
     thickness
-        Of the wall [m].
+        Out-of-plane thickness of the wall [m].
     block_names
         Names of the materials that blocks may have.
 
     Raises
     ------
     SceneError
-        For what describes no wall, or describes one twice.
+        If the table describes no wall, or describes it in two ways.
     """
     _refuse_mixed_descriptions(wall)
     if "drawing" in wall:
@@ -87,7 +87,7 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
         return Outlines(listed.blocks, listed.grounds, notes=listed.notes)
     width = wall.number("block_width", ABOVE_ZERO)
     heights = _course_heights(wall)
-    bond = Bond(width, float(heights[0])) if heights is not None and np.ptp(heights) <= ALIKE * heights[0] else None
+    bond = Bond(width, float(heights[0])) if heights is not None and np.ptp(heights) <= EQUAL * heights[0] else None
     if heights is None:
         bond = Bond(width, wall.number("block_height", ABOVE_ZERO))
     if "courses" in wall:
@@ -106,16 +106,16 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
     materials: dict[int, str] = {}
     if openings:
         polygons, materials = cut_openings(polygons, openings, width)
-    return Outlines(polygons, bond=bond, whole_up_to=WHOLE * width, materials=materials)
+    return Outlines(polygons, bond=bond, whole_up_to=UNCRACKED_WIDTH * width, materials=materials)
 
 
 def _corrections(wall: Table) -> dict[str, float | None]:
-    """How outlines are brought together that were not drawn so: widths [m]."""
+    """Widths [m] by which outlines that do not quite touch are expanded, and gaps are healed."""
     return {"expand": wall.optional_number("expand", ABOVE_ZERO), "heal": wall.optional_number("heal", ABOVE_ZERO)}
 
 
 def _course_heights(wall: Table) -> Array | None:
-    """Heights of the courses ``(n,)`` [m] where a file lists them, None where all are of one block's height."""
+    """Heights of the courses ``(n,)`` [m] if the file lists them; None if all have one block's height."""
     key, heights = wall.key("course_heights"), wall.value("course_heights")
     if heights is None:
         return None
@@ -127,18 +127,18 @@ def _course_heights(wall: Table) -> Array | None:
 
 
 def _number_of_courses(wall: Table, bond: Bond | None, heights: Array | None) -> int:
-    """Number of courses of a wall of a given height, or of those listed, whose sum the height is if it is given."""
+    """Number of courses that fill the given height, or of the listed courses, whose sum must equal a given height."""
     if heights is None and bond:
         return bond.courses_in(wall.number("height", ABOVE_ZERO))
     listed = cast(Array, heights)
     height, total = wall.optional_number("height", ABOVE_ZERO), float(listed.sum())
-    if height is not None and abs(height - total) > ALIKE * total:
+    if height is not None and abs(height - total) > EQUAL * total:
         raise SceneError("wall.height", f"must be left out, or be the sum of wall.course_heights, {total:.6g}", height)
     return len(listed)
 
 
 def _refuse_mixed_descriptions(wall: Table) -> None:
-    """A wall is a drawing, outlines, courses, or a length and height; the keys of two of them do not mix."""
+    """Refuse keys of two descriptions: a wall is a drawing, outlines, courses, or a length and a height."""
     by_size = ("length", "height", "first_course", "ends")
     drawn = ("ground", "units", "expand", "heal")
     bonded = ("block_width", "block_height", "course_heights", "opening")

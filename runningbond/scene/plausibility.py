@@ -1,7 +1,7 @@
-"""What looks like a slip in a scene: numbers in another unit, courses that do not line up, blocks that never touch.
+"""Warnings about likely slips in a scene: wrong units, courses that do not line up, blocks that touch nowhere.
 
-Nothing here is wrong in itself, and nothing is refused. A warning is a line that names the key, its value, and what it
-may be meant to be.
+None of this is an error in itself, and nothing is refused. A warning is one line that names the key, its value, and
+what may have been meant.
 """
 
 import math
@@ -21,7 +21,7 @@ from .wall import Scene, table_of
 
 @dataclass(frozen=True)
 class Plausible:
-    """Range of what a number usually is, in its unit, and other units in which it may have been given."""
+    """Usual range of a number in its unit, and factors of other units in which it may have been given by mistake."""
 
     least: float
     most: float
@@ -29,7 +29,7 @@ class Plausible:
     others: Mapping[str, float] = field(default_factory=dict)
 
     def doubts(self, key: str, value: float) -> Iterator[str]:
-        """A line on a number outside the range; none on 0, which says that there is nothing."""
+        """Yield a warning for a number outside the range; 0 is not warned about, because it means none."""
         if value == 0 or self.least <= value <= self.most:
             return
         middle = math.sqrt(self.least * self.most)
@@ -60,8 +60,8 @@ OF_MORTAR = {
 }
 OF_TIES = Plausible(1e8, 1e12, "Pa", PRESSURES)
 AREA = Plausible(1e-8, 0.1, "m²", {"mm²": 1e-6, "cm²": 1e-4})
-STRONGEST = 5e9
-"""Stress at which a tie yields [Pa] that none comes near."""
+UNREAL_YIELD_STRESS = 5e9
+"""Yield stress of a tie [Pa] that no real material reaches: above it the yield force was probably given as a stress."""
 
 SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
 GRAVITY = Plausible(9.3, 10.3, "m/s²")
@@ -69,31 +69,31 @@ SHAKING = Plausible(0.01, 50.0, "m/s²", {"cm/s²": 1e-2})
 SAMPLING = Plausible(1e-5, 0.5, "s", {"ms": 1e-3})
 FRICTION = (0.1, 1.5)
 ANGLES = (5.0, 60.0)
-"""Numbers that are rather an angle in degrees than its tangent."""
+"""Range of numbers given as tan φ that are more likely the angle itself in degrees."""
 
 THICKNESS = (0.02, 50.0)
-"""Thickness of the wall, in sizes of its middling block."""
+"""Usual thickness of the wall, as a multiple of its median block size."""
 
 LARGEST_SETTLEMENT = 0.1
-"""Displacement of a support, in sizes of the wall."""
+"""Largest usual displacement of a support, as a share of the wall's longer side."""
 
-LEVEL = 0.1
-"""Difference between levels, in heights of the lowest block, below which they are meant to be one."""
+LEVEL_DIFFERENCE = 0.1
+"""Difference between two bed levels, as a share of the smallest block height, below which one level was meant."""
 
-REGULAR = 0.8
-"""Share of blocks that are rectangles in a wall that has courses."""
+RECTANGULAR_SHARE = 0.8
+"""Least share of rectangular blocks for which a wall is taken to have courses."""
 
-NEAR = 0.1
-"""Gap between blocks of a course, in widths of the narrower one, that looks as if it were meant to be none."""
+UNINTENDED_GAP = 0.1
+"""Largest gap between blocks side by side, as a share of the median block width, that is probably unintended."""
 
 
 def warnings(scene: Scene) -> tuple[str, ...]:
-    """What looks like a slip, a line each."""
+    """All warnings about a scene, one line each."""
     return tuple(line for check in CHECKS for line in check(scene))
 
 
 def _materials(scene: Scene) -> Iterator[str]:
-    """Numbers of materials."""
+    """Warn about unusual material parameters."""
     materials: tuple[BlockMaterial | JointMaterial, ...] = (*scene.block_materials, *scene.joint_materials)
     for material in materials:
         table = table_of(material)
@@ -112,7 +112,7 @@ def _materials(scene: Scene) -> Iterator[str]:
 
 
 def _friction(key: str, friction: float) -> Iterator[str]:
-    """Tan φ; 0 is a joint without friction, and meant."""
+    """Warn about an unusual tan φ; 0 is intended: a joint without friction."""
     least, most = FRICTION
     if friction > most:
         angle = ANGLES[0] <= friction <= ANGLES[1]
@@ -127,7 +127,7 @@ def _friction(key: str, friction: float) -> Iterator[str]:
 
 
 def _thicknesses(scene: Scene) -> Iterator[tuple[str, float]]:
-    """What blocks of the wall are as thick as, by their keys."""
+    """Thicknesses of the wall's blocks, each with its key."""
     for k in np.unique(scene.material_of_block[scene.masonry]):
         material = scene.block_materials[k]
         own = material.thickness
@@ -135,7 +135,7 @@ def _thicknesses(scene: Scene) -> Iterator[tuple[str, float]]:
 
 
 def _sizes(scene: Scene) -> Iterator[str]:
-    """Sizes of the wall, gravity, and settlements."""
+    """Warn about unusual wall sizes, gravity and settlements."""
     low, high = scene.blocks.extent(scene.masonry)
     longest = float(max(high - low))
     side = "length" if longest == (high - low)[0] else "height"
@@ -154,12 +154,12 @@ def _sizes(scene: Scene) -> Iterator[str]:
 
 
 def _ties(scene: Scene) -> Iterator[str]:
-    """Numbers of ties, and ends that are anchors in space just beside the wall, or in its openings."""
+    """Warn about unusual tie parameters, and about ends fixed in space just beside the wall or in its openings."""
     ties = scene.ties
     for k, (young, area, most) in enumerate(zip(ties.young, ties.area, ties.yield_force, strict=True)):
         yield from OF_TIES.doubts(f"tie[{k}].young", young)
         yield from AREA.doubts(f"tie[{k}].area", area)
-        if most / area > STRONGEST and AREA.least <= area <= AREA.most:
+        if most / area > UNREAL_YIELD_STRESS and AREA.least <= area <= AREA.most:
             yield f"tie[{k}].yield = {most:g}: is a force, {most / area:.3g} Pa on the tie's area; is a stress meant?"
     anchors = np.argwhere(ties.block == ANCHOR).tolist()
     wall = [shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)] if anchors else []
@@ -172,7 +172,7 @@ def _ties(scene: Scene) -> Iterator[str]:
 
 
 def _beam(scene: Scene) -> Iterator[str]:
-    """A beam, or its way, that is longer than the wall."""
+    """Warn about a beam height or a prescribed beam displacement larger than the wall."""
     if scene.beam is None:
         return
     low, high = scene.blocks.extent(scene.masonry)
@@ -185,7 +185,7 @@ def _beam(scene: Scene) -> Iterator[str]:
 
 
 def _shaking(scene: Scene) -> Iterator[str]:
-    """Peak acceleration of the ground, and the steps of a record."""
+    """Warn about an unusual peak ground acceleration, or time step of a record."""
     if scene.history is not None:
         yield from SHAKING.doubts("load.history, peak acceleration", float(np.hypot(*scene.history.peak)))
         if scene.history.interval is None:
@@ -193,17 +193,17 @@ def _shaking(scene: Scene) -> Iterator[str]:
 
 
 def _courses(scene: Scene) -> Iterator[str]:
-    """Courses whose blocks are not on one level, and a course that ends short of those above and below it."""
+    """Warn about blocks of a course at different levels, and a course that ends short of those above and below it."""
     own = scene.masonry
     low, high = (corner[own] for corner in scene.blocks.boxes)
     size = high - low
     full = scene.blocks.area[own] >= (1 - 1e-6) * size.prod(axis=1)
     levels = _distinct(low[:, 1], scene.blocks.tolerance)
-    if full.mean() < REGULAR or 2 * len(levels) > max(len(full), 4):
+    if full.mean() < RECTANGULAR_SHARE or 2 * len(levels) > max(len(full), 4):
         return
-    beds = _distinct(low[full, 1], scene.blocks.tolerance)  # the lowest corner of a stone cut along an arch is in none
+    beds = _distinct(low[full, 1], scene.blocks.tolerance)  # a stone cut along an arch rests its lowest corner on none
     gaps = np.diff(beds)
-    close = np.flatnonzero(gaps < LEVEL * size[full, 1].min())
+    close = np.flatnonzero(gaps < LEVEL_DIFFERENCE * size[full, 1].min())
     if len(close):
         gap, two = gaps[close[0]], beds[close[0] :][:2]
         low_y, high_y = (scene.blocks.coordinate(float(y), 6) for y in two)
@@ -221,15 +221,16 @@ def _courses(scene: Scene) -> Iterator[str]:
 
 
 def _distinct(values: Array, tolerance: float) -> Array:
-    """Values in ascending order, those that differ by less than a tolerance taken as one."""
+    """Values in ascending order; values that differ by at most a tolerance from the one before are dropped."""
     values = np.sort(values)
     return np.asarray(values[np.append(True, np.diff(values) > tolerance)])
 
 
 def _short(reach: Array, half: float) -> Mask:
-    """Courses that end more than half a block short of both neighbours; at an end of the wall, where all others agree.
+    """Mask of courses ``(n,)`` that end more than half a block short of both neighbours.
 
-    Gables, steps and openings at the side, which are several courses high, are none of these.
+    The top and bottom course have one neighbour; they count only if all other courses end at about the same place.
+    Gables, steps and openings at the side are several courses high, and therefore do not count.
     """
     if len(reach) < 3:
         return np.zeros(len(reach), dtype=np.bool_)
@@ -242,13 +243,13 @@ def _short(reach: Array, half: float) -> Mask:
 
 
 def _head_joints(scene: Scene) -> Iterator[str]:
-    """Blocks that stand side by side, and nowhere touch."""
+    """Warn if blocks stand side by side, but no two of them touch."""
     ends, own = scene.joints.ends, scene.masonry
     run = np.abs(ends[:, 1] - ends[:, 0])
     if (run[:, 1] > run[:, 0])[own[scene.joints.block].all(axis=1)].any():
         return
     low, high = (corner[own] for corner in scene.blocks.boxes)
-    reach = NEAR * np.median((high - low)[:, 0]) / 2 * np.array([1.0, 0.0])
+    reach = UNINTENDED_GAP * np.median((high - low)[:, 0]) / 2 * np.array([1.0, 0.0])
     a, b = touching_boxes(low - reach, high + reach)
     beside = np.minimum(high[a], high[b]) - np.maximum(low[a], low[b])
     lower = np.minimum((high - low)[a, 1], (high - low)[b, 1])

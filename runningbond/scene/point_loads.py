@@ -18,11 +18,11 @@ from .table import Table
 if TYPE_CHECKING:
     from .wall import Scene
 
-NOWHERE = np.zeros(0)
-"""Shares of a line at which it is cut: none."""
+NO_CUTS = np.zeros(0)
+"""No further cuts, as shares of a line."""
 
 STEEP = 10
-"""Rise of an edge from a line [contact's reach] above which an end on the line says where they cross."""
+"""Rise of an edge across a line, in contact tolerances, above which the edge crosses the line even if it ends on it."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class PointLoad(Action):
         return Forces.on(scene, block=block, at=self.at, force=np.array(self.force) / max(1, len(block)))
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a point that nothing is at, and say which is the nearest that would do."""
+        """Refuse a point that touches no movable block; the error names the nearest point that does."""
         if len(self.blocks(scene)) == 0:
             blocks, movable = scene.blocks, np.flatnonzero(~scene.fixed)
             (x0, y0), (x1, y1) = blocks.extent(scene.wall)
@@ -62,9 +62,9 @@ class PointLoad(Action):
 
 @dataclass(frozen=True)
 class LineLoad(Action):
-    """A force per length [N/m] along a straight line [m], taken up by the movable blocks that it runs along.
+    """A force per length [N/m] along a straight line [m], carried by the movable blocks that the line runs along.
 
-    Between two blocks it is on the one that it presses on: floors laid into a wall load the course below.
+    Between two blocks the load acts on the block that it presses on: floors laid into a wall load the course below.
     """
 
     start: tuple[float, float]
@@ -80,18 +80,18 @@ class LineLoad(Action):
 
     @classmethod
     def read(cls, table: Table) -> "LineLoad":
-        """The load of a table with two ends and a force per length."""
+        """Read the load from a table with two ends and a force per length."""
         return cls(table.vector("from"), table.vector("to"), table.vector("force"))
 
-    def parts(self, scene: "Scene", cuts: Array = NOWHERE) -> tuple[Indices, Array]:
-        """Movable blocks that it is on ``(n,)``, and the parts of the line on each, as shares of it ``(n, 2)``.
+    def parts(self, scene: "Scene", cuts: Array = NO_CUTS) -> tuple[Indices, Array]:
+        """Movable blocks that carry the load ``(n,)``, and the part of the line on each, as shares of it ``(n, 2)``.
 
-        The line is cut where blocks begin and end, and at more shares of it ``(k,)`` if they are given.
+        The line is cut where blocks begin and end, and additionally at `cuts` ``(k,)``, shares of the line.
         """
         return self._each_part_once(scene, *self._along(scene), cuts)
 
     def _along(self, scene: "Scene") -> tuple[Indices, Array]:
-        """Movable blocks that it runs along or through ``(n,)``, from where to where, as shares of it ``(n, 2)``."""
+        """Movable blocks that the line runs along or through ``(n,)``, from and to which share of it ``(n, 2)``."""
         length, blocks = self._length, scene.blocks
         line = shapely.LineString([self.start, self.end])
         low, high = blocks.boxes
@@ -113,14 +113,15 @@ class LineLoad(Action):
         return float(np.hypot(*np.subtract(self.end, self.start)))
 
     def _beside(self, points: Array) -> tuple[Array, Array]:
-        """Where points ``(…, 2)`` are along the line, as shares of it, and how far to its left [m], two ``(…)``."""
+        """Position of points ``(…, 2)`` along the line, as shares of it, and distance to its left [m], two ``(…)``."""
         (x, y), from_start = np.subtract(self.end, self.start), points - np.array(self.start)
         return np.asarray(from_start @ [x, y] / self._length**2), np.asarray(from_start @ [-y, x] / self._length)
 
     def _met_in_crossings(self, scene: "Scene", owner: Indices, share: Array) -> Array:
-        """The shares of blocks, ending and beginning at corners and in the joints that the line crosses, ``(n, 2)``.
+        """Trim the blocks' shares of the line to corners and to the joints that the line crosses, ``(n, 2)``.
 
-        Contact reaches beyond a joint, along the line the farther the flatter that crosses it: there it is on both.
+        Blocks reach beyond their outlines by the contact tolerance, so at a joint the shares of two blocks overlap: the
+        more, the flatter the joint crosses the line.
         """
         crossings = [self._crossings(scene, *one) for one in zip(owner, share, strict=True)]
         into, out = np.array(crossings).reshape(-1, 2).T
@@ -128,7 +129,7 @@ class LineLoad(Action):
         first_reaches = (share[:, :1] <= into) & (into <= share[:, 1:])
         second_reaches = (share[:, 0] <= out[:, None]) & (out[:, None] <= share[:, 1])
         left, entered = np.nonzero(first_reaches & second_reaches & (owner[:, None] != owner))
-        # Of two beside a joint that the line lies in, one may begin in the middle of the other.
+        # If the line lies in a joint, a block on one side may begin in the middle of a block on the other side.
         beyond = (share[left, 1] - out[left]) + (into[entered] - share[entered, 0]) + 3 * reach
         is_one = np.abs(out[left] - into[entered]) <= beyond
         left, entered = left[is_one], entered[is_one]
@@ -137,7 +138,7 @@ class LineLoad(Action):
         return met
 
     def _to_corners(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
-        """A block's share of the line, as far as the corners that the line passes and not as far as contact reaches."""
+        """A block's share of the line, trimmed by the contact tolerance to the corners that the line passes."""
         reach = scene.blocks.tolerance
         place, off = self._beside(scene.blocks.polygon(block))
         at = place[np.abs(off) <= reach]
@@ -145,10 +146,10 @@ class LineLoad(Action):
         return max(min(first, default=-math.inf), share[0]), min(max(last, default=math.inf), share[1])
 
     def _crossings(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
-        """Where the line enters and leaves a block as its share of it begins and ends; not a number where it does not.
+        """Shares at which the line enters and leaves a block where the block's share begins and ends; NaN for none.
 
-        An edge is crossed if its ends lie farther than contact reaches on either side of the line, and a steep one also
-        where it has an end on the line: all edges of a corner that the line passes, where it may only touch the block.
+        An edge is crossed if its ends lie on either side of the line, farther off than the contact tolerance. A steep
+        edge is crossed also if one end lies on the line: all edges of a corner that the line only touches in passing.
         """
         reach = scene.blocks.tolerance
         place, off = self._beside(scene.blocks.polygon(block))
@@ -158,17 +159,17 @@ class LineLoad(Action):
         across |= (low <= reach) & (high >= -reach) & (high - low > STEEP * reach)
         place, off, run, rise = place[across], off[across], run[across], rise[across]
         at = place - off / rise * run
-        # Rounding of the outline that contact reaches to, which has arcs at corners.
+        # The share of the line ends on the buffered outline, which has arcs at corners: allow for its rounding.
         within = (1 + 1e-6) * reach * np.hypot(run, rise / self._length) / np.abs(rise)
         into = at[(rise < 0) & (np.abs(at - share[0]) <= within)]
         out = at[(rise > 0) & (np.abs(at - share[1]) <= within)]
         return max(into, default=math.nan), min(out, default=math.nan)
 
     def _each_part_once(self, scene: "Scene", owner: Indices, share: Array, cuts: Array) -> tuple[Indices, Array]:
-        """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""
+        """Cut the line where blocks begin and end, and assign each part to one of the blocks there."""
         close = 3 * scene.blocks.tolerance / self._length
         cuts = np.unique(np.concatenate([[0.0, 1.0], share.ravel(), cuts]))
-        # One block ends as far beyond its neighbour's beginning as contact reaches: the cut is in the middle.
+        # Shares of neighbours overlap by the contact tolerance: the cut is in the middle of the overlap.
         groups = np.split(cuts, np.flatnonzero(np.diff(cuts) > close) + 1)
         cuts = np.array([0.0, *(group.mean() for group in groups[1:-1]), 1.0])
         given: list[tuple[int, float, float]] = []
@@ -178,7 +179,7 @@ class LineLoad(Action):
         return np.array([part[0] for part in given]), np.array([part[1:] for part in given])
 
     def _pressed(self, scene: "Scene", blocks: Indices, low: float, high: float) -> int:
-        """The one of some blocks beside a part of the line that the force presses on."""
+        """The block that the force presses on, among the blocks beside a part of the line."""
         if len(blocks) == 1:
             return int(blocks[0])
         at = np.array(self.start) + (low + high) / 2 * np.subtract(self.end, self.start)
@@ -198,18 +199,19 @@ class LineLoad(Action):
         return int(pressed[0])
 
     def forces(self, scene: "Scene") -> Forces:
-        """Two forces on each of its `parts`, at Gauss points: of the same resultant and the same first two moments."""
+        """Two forces on each of the `parts`, at Gauss points: same resultant and same first two moments as the line."""
         return self._on(scene, *self.parts(scene))
 
     def forces_by_piece(self, scene: "Scene", edges: Array) -> Forces:
-        """As `forces`, of the line cut where it meets edges ``(n, 2, 2)`` as well.
+        """As `forces`, with the line additionally cut where it meets edges ``(n, 2, 2)`` [m].
 
-        In constant strain displacements along a part are linear then, and its two forces work as it does.
+        With elements of constant strain the displacement along each part is then linear, so that the two forces do the
+        same work as the line load.
         """
         return self._on(scene, *self.parts(scene, self._met(edges, scene.blocks.tolerance)))
 
     def _met(self, edges: Array, reach: float) -> Array:
-        """Where it crosses edges ``(n, 2, 2)``, or their ends lie on it, as shares of it ``(k,)``."""
+        """Shares of the line ``(k,)`` at which it crosses edges ``(n, 2, 2)`` [m] or ends of edges lie on it."""
         _, off = self._beside(edges)
         on, (low, high) = np.abs(off) <= reach, np.sort(off).T
         across = (low < -reach) & (high > reach)
@@ -240,7 +242,7 @@ class LineLoad(Action):
         return tuple(Arrow(direction, tip, np.array([one])) for tip, one in zip(tips, of, strict=True))
 
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
-        """Its middle, on the block that bears it there, or on both where two meet."""
+        """Middle of the line, on the block that carries the load there, or on both blocks if two meet there."""
         block, share = self.parts(scene)
         reach = scene.blocks.tolerance / self._length
         there = (share[:, 0] <= 0.5 + reach) & (share[:, 1] >= 0.5 - reach)
@@ -263,17 +265,17 @@ class Moment(Action):
 
     @classmethod
     def read(cls, table: Table) -> "Moment":
-        """The load of a table with a point and a moment."""
+        """Read the load from a table with a point and a moment."""
         return cls(table.vector("at"), table.number("moment", Range()))
 
     def forces(self, scene: "Scene") -> Forces:
-        """The moment on its block."""
+        """The moment on the block that holds the point."""
         moment = np.zeros(len(scene.blocks))
         moment[self._blocks(scene)] = self.moment
         return Forces.on(scene, moment=moment)
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a point that is in no movable block, or on the joint of two."""
+        """Refuse a point that is in no movable block, or on the joint between two."""
         if len(self._blocks(scene)) != 1:
             what = "must lie in one block that can move, and not on a joint"
             raise SceneError(f"{key}.at", what, list(self.at))
@@ -292,15 +294,15 @@ class Moment(Action):
 
 @dataclass(frozen=True, eq=False)
 class GivenForces(Action):
-    """Forces as they are: what a record keeps of a load of a user's own, and a drawn wall of loads at points."""
+    """Forces as plain arrays: how records store a user-defined load, and randomly drawn walls store point loads."""
 
     given: Forces
-    place: tuple[Indices, Array, Array] | None = None  # where displacements are read, as `control` has it
+    place: tuple[Indices, Array, Array] | None = None  # where displacements are read, as `control` returns it
 
     def forces(self, scene: "Scene") -> Forces:
         """These forces."""
         return self.given
 
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
-        """Where the load that they were of is read."""
+        """Control point of the original load."""
         return self.place or super().control(scene)

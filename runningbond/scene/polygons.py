@@ -1,4 +1,4 @@
-"""Parts of polygons that were cut, as shapely gives them, and their corners."""
+"""Parts of polygons that shapely has cut, and their corners."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,17 +10,17 @@ from shapely.geometry.polygon import orient
 from .arrays import Array
 
 STRAIGHT = 1e-9
-"""Sine of the turn below which a corner is none."""
+"""Sine of the angle by which an outline turns at a vertex, below which the vertex lies on a straight side."""
 
 
 def polygonal_parts(shape: Any) -> list[Any]:
-    """Polygons of a geometry, from the bottom up and left to right; points and lines where it touched are left out."""
+    """Polygons of a geometry, from the bottom up and left to right, without points and lines of mere contact."""
     parts = [part for part in shapely.get_parts(shape) if part.area > 0]
     return sorted(parts, key=lambda part: (part.bounds[1], part.bounds[0]))
 
 
 def outer_corners(polygon: Any) -> Array:
-    """Corners of a polygon, counter-clockwise, ``(n, 2)``; those in the middle of a straight side are left out."""
+    """Corners of a polygon, counter-clockwise, ``(n, 2)``, without vertices on straight sides."""
     ring = np.array(orient(polygon).exterior.coords)[:-1]
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
@@ -28,17 +28,17 @@ def outer_corners(polygon: Any) -> Array:
 
 
 def without_spikes(ring: Array, width: float) -> tuple[Array, Array]:
-    """A ring's corners ``(n, 2)`` without those at which it turns back on itself, as cutting and joining shapes leaves.
+    """Remove corners at which a ring ``(n, 2)`` turns back on itself, as cutting and joining of shapes may leave them.
 
     Parameters
     ----------
     width
-        Of the widest spike that is taken out, and of the largest distance at which two corners are one [m].
+        Width of the widest spike that is removed, and largest distance at which two corners are merged [m].
 
     Returns
     -------
     ring, tips : (m, 2), (k, 2) float
-        What is left, three corners at least, and the corners that spikes out of the ring, or slits into it, ended at.
+        The remaining corners, at least three, and the removed tips of spikes out of the ring and of slits into it.
     """
     tips = np.zeros((0, 2))
     while len(ring) > 3:
@@ -47,7 +47,7 @@ def without_spikes(ring: Array, width: float) -> tuple[Array, Array]:
         turn = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
         twice = np.flatnonzero(out <= width)
         if not len(twice):
-            # The end of its shorter side is as far from the line of the longer one as the spike is wide.
+            # The width of a spike is the distance of the end of its shorter side from the line of its longer one.
             spikes = np.flatnonzero(((before * after).sum(axis=1) < 0) & (turn <= width * np.maximum(out, back)))
             if not len(spikes):
                 break

@@ -1,4 +1,4 @@
-"""Ways there and back: the turning points of a displacement that is prescribed."""
+"""Loading protocols: the turning points of a prescribed displacement."""
 
 from typing import Any
 
@@ -7,11 +7,11 @@ from .ranges import Range
 from .table import Table
 
 MOST_CYCLES = 1000
-"""Cycles of a protocol at most."""
+"""Largest number of cycles per amplitude."""
 
 
 def turning_points(key: str, value: Any) -> tuple[float, ...]:
-    """The points that a way leads to, one after the other, from zero on: a list of numbers, not all zero."""
+    """Check the turning points of a path that starts from zero: a list of finite numbers, not all of them zero."""
     points = tuple(Range().take(key, x) for x in value) if isinstance(value, (list, tuple)) else ()
     if not any(points):
         raise SceneError(key, "must be a list of finite numbers that are not all zero", value)
@@ -19,10 +19,10 @@ def turning_points(key: str, value: Any) -> tuple[float, ...]:
 
 
 def read_protocol(table: Table) -> tuple[float, ...] | None:
-    """The turning points of a table's amplitudes and cycles, and None of a table without.
+    """Read the turning points from a table's amplitudes and cycles; None for a table without amplitudes.
 
-    Each amplitude is gone to and as far to the other side, in as many cycles, a negative one to the other side first;
-    in the end it goes back to zero.
+    Each amplitude is followed by its opposite, and this is repeated for the number of cycles (a negative amplitude
+    begins on the other side). The path ends at zero.
     """
     if "amplitudes" not in table:
         if "cycles" in table:

@@ -1,4 +1,4 @@
-"""What values may be, said once beside the field that holds them: the same in Python and in files."""
+"""Admissible values, stated once beside the field that holds them, for Python and for scene files alike."""
 
 import difflib
 import math
@@ -15,7 +15,7 @@ import numpy as np
 from .errors import SceneError
 
 SMALLEST = 1e-100
-"""Numbers below it, or above its inverse, describe nothing; their products leave the range of a double."""
+"""Smallest size of a nonzero number, and inverse of the largest: products of others could overflow or underflow."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Range:
         return f"a number {' and '.join(limits)}" if limits else "a number, finite"
 
     def take(self, key: str, value: object) -> float:
-        """A value as a number of the range; any other is refused under its key."""
+        """The value as a float; refused under its key if it is no number within the range."""
         number = _finite(value)
         if number is None or not (self.least <= number <= self.most and self.above < number < self.below):
             raise SceneError(key, f"must be {self}{_beyond(value, str(self))}", value)
@@ -47,14 +47,14 @@ NotNegative: TypeAlias = Annotated[float, AT_LEAST_ZERO]
 
 @cache
 def ranges_of(part: Any) -> dict[str, Range]:
-    """Ranges of the fields of a dataclass, a type, that are annotated with one, by their names."""
+    """Ranges of the fields of a dataclass type that are annotated with one, by field name."""
     hints = get_type_hints(part, include_extras=True)
     parts = [(name, part) for name, hint in hints.items() for part in (hint, *get_args(hint))]
     return {name: part.__metadata__[0] for name, part in parts if hasattr(part, "__metadata__")}
 
 
 def check_numbers(part: Any, table: str) -> None:
-    """Bring a frozen dataclass's numbers into their ranges as floats; None passes for what is left out."""
+    """Check the numbers of a frozen dataclass and store them as floats; None passes for fields that default to it."""
     kind: Any = type(part)
     for name, within in ranges_of(kind).items():
         value = getattr(part, name)
@@ -71,20 +71,20 @@ def vector(key: str, value: Any) -> tuple[float, float]:
 
 
 def check_whole_number(key: str, value: object, *, least: int = 1) -> None:
-    """Refuse what is no whole number, or less than one."""
+    """Refuse a value that is not a whole number, or is less than `least`."""
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         raise SceneError(key, f"must be a whole number, at least {least}", value)
 
 
 def path_of(key: str, value: object) -> Path:
-    """A path; what is none is refused under its key."""
+    """The value as a path; refused under its key if it is none."""
     if not isinstance(value, (str, os.PathLike)):
         raise SceneError(key, "must be a path", value)
     return Path(value)
 
 
 def one_of(key: str, value: object, options: Iterable[str]) -> str:
-    """One of a few words."""
+    """The value, refused under its key if it is none of the options."""
     words = list(options)
     if not isinstance(value, str) or value not in words:
         listed = ", ".join(f'"{word}"' for word in words)
@@ -92,30 +92,30 @@ def one_of(key: str, value: object, options: Iterable[str]) -> str:
     return value
 
 
-LIKE = 0.6
-"""Likeness from which on a word may be a misspelt other one, whatever its capitals."""
+LEAST_SIMILARITY = 0.6
+"""Least similarity ratio (`difflib`, case ignored) at which a word may be a misspelling of another."""
 
 
 def suggestion(word: object, options: Sequence[str]) -> str:
-    """What a misspelt word may have been meant to be."""
+    """Hint at the option that a misspelt word may stand for; empty if no option is similar."""
     likely = nearest(word, options)
     return f'; did you mean "{likely}"?' if likely else ""
 
 
 def nearest(word: object, options: Sequence[str]) -> str:
-    """The option that is most like a word; empty where none is like it."""
+    """The option that is most similar to a word; empty if none is similar enough."""
     if not isinstance(word, str) or not options:
         return ""
 
     def likeness(option: str) -> float:
         return difflib.SequenceMatcher(None, option.casefold(), word.casefold()).ratio()
 
-    likely = max(options, key=likeness)  # the first one of several that are as near
-    return likely if likeness(likely) >= LIKE else ""
+    likely = max(options, key=likeness)  # the first of several that are equally similar
+    return likely if likeness(likely) >= LEAST_SIMILARITY else ""
 
 
 def _beyond(value: object, words: str) -> str:
-    """What else is asked of a float that no double's product holds; `words` may have said so."""
+    """Further requirement on a float that is not finite or too large or small, unless `words` already states it."""
     if not isinstance(value, float) or _finite(value) is not None:
         return ""
     if math.isfinite(value):

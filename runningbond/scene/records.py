@@ -1,4 +1,4 @@
-"""Records of a ground's motion in files: two or three columns of text, or PEER's AT2, VT2 and DT2."""
+"""Ground motion records in files: two or three columns of text, or PEER's AT2, VT2 and DT2."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from .errors import SceneError
 COMMENTS = ("#", "%", "!", "//")
 
 PEER = {".at2": "ACCELERATION", ".vt2": "VELOCITY", ".dt2": "DISPLACEMENT"}
-"""What files of PEER hold, by their endings."""
+"""Quantity in a PEER file, by file extension."""
 
 PEER_UNITS = {
     ("ACCELERATION", "G"): ("g", 1.0),
@@ -23,28 +23,28 @@ PEER_UNITS = {
     ("VELOCITY", "CM/SEC"): ("velocity", 0.01),
     ("DISPLACEMENT", "CM"): ("displacement", 0.01),
 }
-"""Quantity of a history and the factor into its unit, by what the third line of a file of PEER says."""
+"""Quantity of a history and the conversion factor into its unit, by the third line of a PEER file."""
 
 NAMES = re.compile(r"[\"']?(?!(nan|inf)\b)[^\W\d_]", re.IGNORECASE)
-"""How a first row begins that names the columns."""
+"""Beginning of a first row that holds the names of the columns."""
 
 DECIMAL = re.compile(r"[^,.]*(\d,\d[^,.]*)?")
-"""A word whose comma, if it has any, is a decimal one."""
+"""A word in which a comma, if there is one, is a decimal comma."""
 
-GAP, FEWEST = 5.0, 8
-"""Time step, in middling ones, that is a gap; and rows of a file below which none is one."""
+GAP_STEPS, FEWEST_ROWS = 5.0, 8
+"""Time step, in median ones, above which a record has a gap; fewest rows of a record that is checked for gaps."""
 
-LARGEST = 1e6
-"""Largest number of a record, in the unit of its quantity: what is larger is none of the ground's."""
+LARGEST_VALUE = 1e6
+"""Largest admissible number in a record, in the file's unit: no ground motion is larger."""
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """A record as a file has it."""
+    """A record as read from a file."""
 
     time: Array  # (n,) [s], ascending
-    values: Array  # (n, 2) horizontal and vertical, in the file's unit
-    quantity: str | None = None  # where the file says it
+    values: Array  # (n, 2) horizontal and vertical, in the file's unit (PEER: in the unit of `quantity`)
+    quantity: str | None = None  # if the file states it
 
 
 def read_record(path: Path, key: str) -> Record:
@@ -53,8 +53,8 @@ def read_record(path: Path, key: str) -> Record:
     Raises
     ------
     SceneError
-        For a file that cannot be read, under the key; for one that is no record, under its name and the number of
-        the line that is wrong.
+        For a file that cannot be read, under the key; for a file that is no record, under the file's name and the
+        number of the wrong line.
     """
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe, which may never end
@@ -82,8 +82,8 @@ def _numbers(path: Path, number: int, words: Sequence[str]) -> list[float]:
         except ValueError:
             what = "must be a number" if word else "has a gap where a number must be"
             raise SceneError(_line(path, number), what, word or None) from None
-        if not abs(value) <= LARGEST:
-            raise SceneError(_line(path, number), f"must be a finite number, at most {LARGEST:g}", word)
+        if not abs(value) <= LARGEST_VALUE:
+            raise SceneError(_line(path, number), f"must be a finite number, at most {LARGEST_VALUE:g}", word)
         found.append(value)
     return found
 
@@ -97,7 +97,7 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
 
 
 def _words(text: str) -> list[str]:
-    """The words of a row; where semicolons or blanks part them, their commas are decimal ones."""
+    """The words of a row; if semicolons or blanks separate them, commas are decimal commas."""
     words = re.split(r"\s*;\s*|\s+", text)
     if len(words) > 1 and all(map(DECIMAL.fullmatch, words)):
         return [word.replace(",", ".") for word in words]
@@ -123,8 +123,8 @@ def _columns(path: Path, lines: Sequence[str]) -> Record:
             raise SceneError(_line(path, number), what, table[-1][0])
     values = np.array(table)
     step = np.diff(values[:, 0])
-    wide = np.flatnonzero(step > GAP * np.median(step))
-    if len(wide) and len(values) >= FEWEST:
+    wide = np.flatnonzero(step > GAP_STEPS * np.median(step))
+    if len(wide) and len(values) >= FEWEST_ROWS:
         number = rows[int(wide[0]) + 1][0]
         what = f"comes after a gap of {step[wide[0]]:.4g} s, the steps of the record are {np.median(step):.4g} s"
         raise SceneError(_line(path, number), what, float(values[wide[0] + 1, 0]))
@@ -133,7 +133,7 @@ def _columns(path: Path, lines: Sequence[str]) -> Record:
 
 
 def _peer(path: Path, lines: Sequence[str]) -> Record:
-    """A file of PEER: four lines of head with the unit, NPTS and DT, then the values row by row."""
+    """Read a PEER file: four header lines with the unit, NPTS and DT, then the values row by row."""
     if len(lines) < 5:
         raise SceneError(_line(path, max(1, len(lines))), "ends a file of PEER, which has four lines before its values")
     holds = PEER[path.suffix.lower()]
@@ -155,7 +155,7 @@ def _peer(path: Path, lines: Sequence[str]) -> Record:
 
 
 def _head(path: Path, line: str) -> tuple[int, float]:
-    """Number of values and time step [s] of a file of PEER."""
+    """Number of values and time step [s] of a PEER file."""
     number = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![\d.])"
     found = re.search(rf"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*{number}", line, re.IGNORECASE)
     found = found or re.match(rf"\s*(\d+)\s+{number}\s+NPTS", line, re.IGNORECASE)

@@ -1,6 +1,6 @@
-"""The scene file as a JSON schema, for editors: what the reader asks of each table and key while it reads some scenes.
+"""The scene file as a JSON schema, for editors, derived from what the reader requires while it reads example scenes.
 
-The scenes come to every key between them; what they are worth as walls does not matter.
+Together the example scenes use every key; whether they make sense as walls does not matter.
 """
 
 import re
@@ -86,11 +86,11 @@ HOLE = {"from": [0.4, 0.2], "to": [0.8, 0.6]}
 LOW = {"from": [1.4, 0.2], "to": [2.0, 0.4], "lintel": LINTEL}
 LED = {"height": 0.1, "joint": "lime", "condition": "level", "force": [0.0, -1.0], "force_line": "fixed"}
 
-ALIKE = {r"^materials\.[^.]+": "block", r"^joints\.[^.]+": "joint", r"^inner_joint": "joint"}
-"""Tables with the keys of others."""
+SAME_KEYS = {r"^materials\.[^.]+": "block", r"^joints\.[^.]+": "joint", r"^inner_joint": "joint"}
+"""Tables that have the same keys as another one: pattern of their path, and path of that other table."""
 
 NAMED = ("materials", "joints")
-"""Tables whose keys are names that anybody gives."""
+"""Tables whose keys are names chosen by the user."""
 
 SCENES: tuple[Schema, ...] = (
     PLAIN,
@@ -119,29 +119,29 @@ SCENES: tuple[Schema, ...] = (
     {"load": {"gravity": 9.81, "live": {"kind": "settlement", "box": BOX, "by": [0.0, -0.1]}}},
     {"joints": {"lime": {"friction": 0.5}}, "assign": [{"joint": "lime", "orientation": "head"}]},
     {"load": {"gravity": 9.81, "history": PULSE}},
-    {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # there is no such file, nor
-    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "expand": 0.01, "heal": 0.001}},  # such,
+    {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # this file does not exist, nor
+    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "expand": 0.01, "heal": 0.001}},  # does this,
     {"wall": {"thickness": 0.2, "outlines": [STONE], "ground": [SOIL], "units": "m", "expand": 0.01, "heal": 0.001}},
-    {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # and layers without one
+    {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # and there are no layers
 )
-"""What is read: tables in place of those of `PLAIN`."""
+"""The example scenes: each replaces or adds tables to those of `PLAIN`."""
 
 
 _reading = Lock()
 
 
 def scene_schema() -> Schema:
-    """JSON schema, draft 7, of a scene file. No scene may be read in another thread meanwhile: its keys would count."""
+    """JSON schema, draft 7, of a scene file; during the call no other thread may read a scene: its keys would count."""
     return {"$schema": "http://json-schema.org/draft-07/schema#", "title": "runningbond scene", **_table(_read(), "")}
 
 
 def _read() -> Tables:
-    """Content of the tables of all scenes, and what is asked of their keys, by what they have in common."""
+    """Content of the tables of all example scenes and the requirements on their keys, by the tables' common path."""
     with _reading:
         Table.visits, visits = [], []
         try:
             for scene in SCENES:
-                with suppress(SceneError):  # of files that are not there; what was asked until then counts
+                with suppress(SceneError):  # for files that do not exist; keys that were read before count
                     scene_from_dict(deepcopy({**PLAIN, **scene}))
         finally:
             visits, Table.visits = Table.visits, None
@@ -154,17 +154,17 @@ def _read() -> Tables:
 
 @cache
 def _keys() -> dict[str, frozenset[str]]:
-    """All keys that a table may have, whatever its kind."""
+    """All keys that the table at each path may have, whatever its kind."""
     return {path: frozenset(key for _, asked in visits for key in asked) for path, visits in _read().items()}
 
 
 def is_key_of(table: str, key: str) -> bool:
-    """Whether a table at the top of a scene file may have a key."""
+    """Whether a top-level table of a scene file may have a key."""
     return key in _keys()[table]
 
 
 def misspelt(content: dict[Any, Any], name: str = "") -> SceneError | None:
-    """The first key of a table, or of those in it, that no such table has, but that is spelt much like one of its."""
+    """Error for the first unknown key in a table or its inner tables that is spelt much like a known one; else None."""
     path = _path(name)
     known = _keys().get(path, frozenset())
     if not known and path not in NAMED:
@@ -186,15 +186,15 @@ def misspelt(content: dict[Any, Any], name: str = "") -> SceneError | None:
 
 
 def _path(name: str) -> str:
-    """What tables with the same keys have in common, of the full name of one."""
+    """Common path of all tables with the same keys, from the full name of one of them."""
     path = re.sub(r"\[\d+\]", "", name)
-    for pattern, default in ALIKE.items():
+    for pattern, default in SAME_KEYS.items():
         path = re.sub(pattern, default, path)
     return path
 
 
 def _table(tables: Any, path: str) -> Schema:
-    """What the table at a path may hold; one of several things where that depends on its kind."""
+    """Schema of the table at a path; one of several variants if its keys depend on its ``kind``."""
     visits = tables[path]
     kinds = dict.fromkeys(content["kind"] for content, asked in visits if "words" in asked.get("kind", {}))
     variants = {
@@ -225,7 +225,7 @@ def _variant(tables: Any, path: str, visits: list[tuple[Schema, dict[str, Schema
 
 
 def _value(tables: Any, path: str, asked: Schema, value: Any) -> Schema:
-    """What is asked of one value; nothing where only the value itself could tell, and there is none."""
+    """Schema of one value; empty if only an example value could show it, and there is none."""
     if within := asked.get("within"):
         return _number(within)
     if words := asked.get("words"):
@@ -243,7 +243,7 @@ def _value(tables: Any, path: str, asked: Schema, value: Any) -> Schema:
 
 
 def _like(tables: Any, path: str, value: Any) -> Schema:
-    """Values like one."""
+    """Schema of values of the same type as an example value."""
     if isinstance(value, dict):
         return _table(tables, _path(path))
     if isinstance(value, list):
@@ -264,7 +264,7 @@ def _number(within: Range) -> Schema:
 
 
 def _merged(found: Iterable[Schema]) -> Schema:
-    """Any of some things; words that are not always the same are names, and may be any."""
+    """Schema that admits any of several; options that differ between scenes are names, so any string is admitted."""
     distinct: list[Schema] = []
     distinct += (one for one in found if one and one not in distinct)
     if len(distinct) > 1 and all("enum" in one for one in distinct):

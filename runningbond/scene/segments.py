@@ -11,11 +11,11 @@ from .blocks import CONTACT_TOLERANCE, Blocks, touching_boxes
 from .errors import SceneError
 from .polygons import smaller_sides
 
-NEAR = 0.1
-"""Overlap, in sizes of the smallest block, that looks like one of a survey."""
+SMALL_OVERLAP = 0.1
+"""Depth of an overlap, relative to the root area of the smallest block, below which it may be a survey inaccuracy."""
 
-MEETING = 1e-9
-"""Distance between two points, in lengths of their joint, that is rounding: forces in them have no lever."""
+ROUNDING = 1e-9
+"""Distance of two contact points, relative to the joint's length, that is rounding: their forces have no lever arm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,9 @@ class Joints:
     block : (nj, 2) int
         The blocks a and b on either side; the joint's normal points from a to b.
     ends : (nj, 2, 2) float
-        End points [m], in the sense in which a's counter-clockwise boundary runs.
+        End points [m], in the direction of a's counter-clockwise boundary.
     inner : (nj,) bool
-        Whether a joint is a potential crack inside what was one block; none is where it is left out.
+        Whether a joint is a potential crack inside a block of the wall; by default no joint is.
     """
 
     block: Indices
@@ -58,16 +58,16 @@ class Joints:
         return frozen(run[:, 0] > run[:, 1], np.bool_)
 
     def too_short_for(self, inset: float | Array) -> Mask:
-        """Whether contact points moved in from both ends by an inset [m], one or one a joint, meet: ``(nj,)``."""
-        return np.asarray(2 * np.asarray(inset) >= (1 - MEETING) * self.length)
+        """Whether contact points meet that are an inset [m] (one, or one per joint) away from both ends, ``(nj,)``."""
+        return np.asarray(2 * np.asarray(inset) >= (1 - ROUNDING) * self.length)
 
 
 def find_joints(blocks: Blocks) -> Joints:
     """Find every segment along which two blocks touch.
 
-    Two edges make a joint where they run in opposite senses, lie on one line to within the contact
-    tolerance, and overlap by more than it. Nothing is asked of courses or rows, so T-junctions, half
-    blocks, openings and inclined edges all come out right. Blocks that overlap are refused by a `SceneError`.
+    Two edges form a joint if they run in opposite directions, lie on one line to within the contact
+    tolerance, and overlap by more than this tolerance. Courses play no part in this, so T-junctions, half
+    blocks, openings and inclined edges are all handled. Overlapping blocks raise a `SceneError`.
     """
     tolerance = blocks.tolerance
     start = blocks.vertices
@@ -103,8 +103,8 @@ def find_joints(blocks: Blocks) -> Joints:
 def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:
     """Refuse blocks that overlap by more than the contact tolerance.
 
-    Convex blocks that share a joint lie on either side of its line, so only the other neighbours
-    need an intersection.
+    Convex blocks that share a joint lie on opposite sides of its line, so the intersection is computed
+    for all other neighbours only.
     """
     a, b = blocks.neighbours()
     shared = np.isin(a * len(blocks) + b, joined[:, 0] * len(blocks) + joined[:, 1])
@@ -113,7 +113,7 @@ def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:
     involved, local = np.unique(np.concatenate([a, b]), return_inverse=True)
     polygons = blocks.shapes(involved)
     common = shapely.intersection(polygons[local[: len(a)]], polygons[local[len(a) :]])
-    # A strip as wide as the tolerance is contact; what is left after eating it away is overlap.
+    # A common strip as wide as the tolerance counts as contact; what is left after eroding it is overlap.
     deep = ~shapely.is_empty(shapely.buffer(common, -blocks.tolerance / 2))
     if deep.any():
         first = int(np.argmax(deep))
@@ -121,7 +121,7 @@ def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:
 
 
 def _overlap(blocks: Blocks, a: int, b: int, common: shapely.Geometry) -> str:
-    """What is wrong with block a, which shares an area with b, and what would be right."""
+    """Error message for block a, which overlaps block b, with its remedy."""
     other = f"overlaps {blocks.name(b)}"
     inside = common.area > (1 - CONTACT_TOLERANCE) * blocks.area[[a, b]]
     if inside.all():
@@ -132,6 +132,6 @@ def _overlap(blocks: Blocks, a: int, b: int, common: shapely.Geometry) -> str:
     part = max(shapely.get_parts(common), key=lambda shape: shape.area)
     depth = float(smaller_sides([part])[0])
     where = f"by {depth:.2g} m at {blocks.place(np.array(part.representative_point().coords[0]))}"
-    is_small = depth < NEAR * np.sqrt(blocks.area.min())
+    is_small = depth < SMALL_OVERLAP * np.sqrt(blocks.area.min())
     heal = "; wall.heal closes small overlaps of drawings and outlines" if is_small else ""
     return f"{other} {where}; blocks may touch, not share an area{heal}"

@@ -1,4 +1,4 @@
-"""Settlement: a part of the ground that moves, and takes the wall with it."""
+"""Settlement: prescribed motion of a part of the ground."""
 
 import math
 from collections.abc import Sequence
@@ -21,25 +21,27 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 LARGEST_ANGLE = 10.0
-"""Rotation of a support [degrees] up to which it counts as small."""
+"""Largest rotation of a support [degrees]: up to it rotations count as small."""
 
 
 @dataclass(frozen=True)
 class Settlement(Action):
-    """Ground, or fixed blocks, inside a box that move; λ of limit analysis is the share of the reaction that is left.
+    """Prescribed motion of ground, or fixed blocks, inside a box.
+
+    In limit analysis, λ is the share of the reaction of the moving support that remains.
 
     Parameters
     ----------
     box
-        Lower left and upper right corner [m]. Ground is cut at its sides and its top; what is inside moves.
+        Lower left and upper right corner [m]. Ground is cut at the sides and the top of the box; the part inside moves.
     by
         Displacement [m] at λ = 1.
     rotation_angle
         Rotation [degrees] at λ = 1, counter-clockwise.
     about
-        Point about which it turns [m]; None is the middle of the box.
+        Centre of rotation [m]; None for the middle of the box.
     path
-        Multiples of all that which the support is taken to, one after the other.
+        Multiples of this motion that the support is moved to, one after the other.
     """
 
     box: tuple[tuple[float, float], tuple[float, float]]
@@ -63,12 +65,12 @@ class Settlement(Action):
 
     @property
     def centre(self) -> Array:
-        """Point about which it turns [m]."""
+        """Centre of rotation [m]."""
         return np.asarray(np.mean(self.box, axis=0) if self.about is None else self.about, dtype=float)
 
     @classmethod
     def read(cls, table: Table) -> "Settlement":
-        """The load of a table with a box, and a displacement or a rotation."""
+        """Read the load from a table with a box, and a displacement or a rotation."""
         box = table.required("box", "two corners [[x0, y0], [x1, y1]]")
         if "by" not in table and "rotation_angle" not in table:
             what = "is missing: the displacement [x, y] in m; or give rotation_angle in degrees"
@@ -82,12 +84,12 @@ class Settlement(Action):
         return cls(box, by, angle or 0.0, about, to_and_fro or ((1.0,) if path is None else path))
 
     def forces(self, scene: "Scene") -> Forces:
-        """None: it moves the ground."""
+        """No forces: the load moves the ground."""
         return Forces.on(scene)
 
     def moving(self, scene: "Scene") -> Mask:
-        """Fixed blocks that move, ``(nb,)``; the halves of one that may crack move together."""
-        # What only touches the box, or has its middle on a side of it, stays, whatever the last bit of a sum of sizes.
+        """Mask of fixed blocks that move, ``(nb,)``; the halves of a block that may crack move together."""
+        # Blocks that only touch the box, or have their middle on a side of it, stay, however coordinates are rounded.
         low, high = np.array(self.box) + [[scene.blocks.tolerance], [-scene.blocks.tolerance]]
         number = np.arange(len(scene.blocks))
         _, body = np.unique(np.where(scene.part_of < 0, len(number) + number, scene.part_of), return_inverse=True)
@@ -95,13 +97,13 @@ class Settlement(Action):
         middle = (np.bincount(body, area * scene.blocks.centroid[:, 0]) / np.bincount(body, area))[body]
         bottom, top = (ends[:, 1] for ends in scene.blocks.boxes)
         level = (np.bincount(body, (bottom < high[1]) & (top > low[1])) > 0)[body]
-        # Ground is cut at the box's top as well: what rises above it is the rest, which may bridge the box.
+        # Ground is cut at the top of the box as well: ground that rises above it is the rest, which may bridge the box.
         inside = scene.wall | (top < self.box[1][1] + 2 * scene.blocks.tolerance)
         moving: Mask = scene.fixed & level & inside & (middle > low[0]) & (middle < high[0])
         return moving
 
     def motion(self, scene: "Scene") -> Array:
-        """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``; zero of what stays."""
+        """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``; zero for blocks at rest."""
         turn = math.radians(self.rotation_angle)
         arm = scene.blocks.centroid - self.centre
         motion = np.column_stack(
@@ -110,7 +112,7 @@ class Settlement(Action):
         return np.where(self.moving(scene)[:, None], motion, 0.0)
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a box in which nothing is held, or everything, and pinned corners."""
+        """Refuse pinned supports, and a box without moving ground that supports a movable block."""
         if len(scene.pins) and not scene.fixed.any():
             raise SceneError(key, 'needs support.kind "base" or "fixed-first-course": a ground that moves')
         moving = self.moving(scene)
@@ -119,7 +121,7 @@ class Settlement(Action):
             raise SceneError(f"{key}.box", "holds no ground that bears a block", [list(corner) for corner in self.box])
 
     def control(self, scene: "Scene") -> Any:
-        """The moving ground: its first block, at its highest middle, along its displacement there."""
+        """First moving block of the ground, the middle of its top, and the direction in which this point moves."""
         block = np.flatnonzero(self.moving(scene))[:1]
         low, high = scene.blocks.extent(int(block[0]))
         at = np.array([(low[0] + high[0]) / 2, high[1]])
@@ -135,9 +137,9 @@ class Settlement(Action):
 
 
 def cut_ground(grounds: Sequence[Array], settlements: Sequence[Settlement], reach: float) -> list[Array]:
-    """Cut grounds ``(n, 2)`` [m] at the sides of the boxes of settlements.
+    """Cut grounds ``(n, 2)`` [m] at the sides and tops of the boxes of settlements.
 
-    What is nearer to a corner of theirs than contacts `reach` [m] is at that corner: no piece is thinner.
+    A cut within the contact tolerance `reach` [m] of a corner of the ground is moved to it: no piece is thinner.
     """
     pieces = [shapely.Polygon(ground) for ground in grounds]
     corners = np.concatenate([np.zeros((0, 2)), *grounds])
@@ -153,13 +155,13 @@ def cut_ground(grounds: Sequence[Array], settlements: Sequence[Settlement], reac
 
 
 def _at_corner(place: float, corners: Array, reach: float) -> float:
-    """A place along an axis, or that of a corner within reach of it."""
+    """The coordinate of the nearest corner if it is within reach of `place`, else `place`."""
     apart = np.abs(corners - place)
     return float(corners[apart.argmin()]) if apart.min(initial=np.inf) <= reach else place
 
 
 def read_box(key: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Two corners of a box, lower left before upper right."""
+    """Check the two corners of a box: lower left, then upper right."""
     corners = list(value) if isinstance(value, (list, tuple, np.ndarray)) else []
     if len(corners) != 2:
         raise SceneError(key, "must be two corners [[x0, y0], [x1, y1]]", value)

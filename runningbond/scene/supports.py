@@ -15,16 +15,16 @@ SUPPORT_KINDS: tuple[str, ...] = get_args(SupportKind)
 
 @dataclass(frozen=True, eq=False)
 class Pins:
-    """Motions of blocks that are held at zero, in both senses: direction · u(point) + turn · ω = 0.
+    """Motions of blocks that are held at zero, in both directions: direction · u(point) + turn · ω = 0.
 
     Parameters
     ----------
     block : (n,) int
         The block held.
     point, direction : (n, 2) float
-        Where [m], and the unit vector along which the displacement of that point is zero; (0, 0) for a held rotation.
+        Point [m], and unit vector along which the displacement of this point is zero; (0, 0) for a held rotation.
     turn : (n,) float
-        1 [m/rad] for a held rotation, 0 (where it is left out) for a held displacement.
+        1 [m/rad] for a held rotation, 0 (the default) for a held displacement.
     """
 
     block: Indices
@@ -49,14 +49,14 @@ NO_PINS = Pins(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))
 
 
 def first_course(blocks: Blocks, wall: Mask) -> Mask:
-    """Blocks of the wall whose lowest corner is level with the lowest of all, ``(nb,)``."""
+    """Mask of the wall's blocks whose lowest corner is level with the lowest one of the wall, ``(nb,)``."""
     lowest = blocks.boxes[0][:, 1]
     level: Mask = lowest <= lowest[wall].min() + blocks.tolerance
     return wall & level
 
 
 def corner_pins(blocks: Blocks, wall: Mask, *, roller: bool) -> Pins:
-    """Hold the outer bottom corners of the first course; a `roller` leaves the right one free to move horizontally."""
+    """Pin the outer bottom corners of the first course; a `roller` leaves the right one free to move horizontally."""
     members = first_course(blocks, wall)
     level = blocks.extent(members)[0][1] + blocks.tolerance
     corner = np.flatnonzero(members[blocks.owner] & (blocks.vertices[:, 1] <= level))
@@ -68,21 +68,21 @@ def corner_pins(blocks: Blocks, wall: Mask, *, roller: bool) -> Pins:
 
 
 def free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
-    """Motions of a rigid block that leave its pins alone, mass-orthogonal.
+    """Mass-orthogonal motions of a rigid block that comply with its pins.
 
     Parameters
     ----------
     held : (np, 3) float
-        Displacements that its pins keep at zero, per translation along x and y and rotation about the centroid.
+        Displacements that the pins keep at zero, per translation along x and y and rotation about the centroid.
     inertia : (3,) float
-        Its mass, twice, and its moment of inertia.
+        Mass of the block, twice, and its moment of inertia.
 
     Returns
     -------
     (3, 3) and (3,) float
-        A motion a column, and columns of zeros where there are fewer; their masses, inf where there is none. With
-        pins motions are of the block's own mass, and their coordinates its root mean square displacement [m]; without,
-        or where pins hold its rotation alone, they are the translations along x and y and the rotation themselves.
+        Motions as columns, zero columns if there are fewer than three; and their masses, inf for zero columns. With
+        pins each motion has the block's own mass, and its coordinate is the root mean square displacement [m]. Without
+        pins, or if they hold the rotation only, motions are the translations along x and y and the rotation themselves.
     """
     if not held[:, :2].any():
         turns = not held.any()

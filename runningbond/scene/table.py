@@ -1,4 +1,4 @@
-"""One table of a scene file: gives its values with their types and ranges checked, and refuses keys left over."""
+"""One table of a scene file: returns values after checking their types and ranges, and refuses unknown keys."""
 
 from collections.abc import Iterable
 from dataclasses import MISSING, fields
@@ -11,17 +11,17 @@ OUTLINES = "a list of outlines, each a list of corners [x, y]"
 
 
 class Table:
-    """A TOML table being read: its full name, empty for the file's top level, and what the file holds under that."""
+    """A TOML table that is being read: its full name (empty for the top level of the file) and its content."""
 
     visits: "ClassVar[list[tuple[str, dict[str, Any], dict[str, dict[str, Any]]]] | None]" = None
-    """Where a list stands here, each table adds its name, its content, and what is asked of its keys (`schema`)."""
+    """If this is a list, each table appends its name, its content, and the requirements on its keys (see `schema`)."""
 
     def __init__(self, name: str, content: Any) -> None:
         if not isinstance(content, dict):
             raise SceneError(name, f"must be a table, [{name}] with keys of its own", content)
         self.name = name
         self._left: dict[str, Any] = dict(content)
-        self._keys: dict[str, dict[str, Any]] = {}  # what is asked of each
+        self._keys: dict[str, dict[str, Any]] = {}  # requirements on each key that the reader has asked for
         if Table.visits is not None:
             Table.visits.append((name, content, self._keys))
 
@@ -34,23 +34,23 @@ class Table:
         return key in self._left
 
     def value(self, key: str, default: Any = None) -> Any:
-        """Whatever the key holds; `default` where it is not present."""
+        """The unchecked value of a key; `default` if the key is missing."""
         self._ask(key)
         return self._left.pop(key, default)
 
     def peek(self, key: str) -> Any:
-        """Whatever the key holds, left to be read."""
+        """The unchecked value of a key, which does not count as read; None if the key is missing."""
         return self._left.get(key)
 
     def required(self, key: str, wanted: str) -> Any:
-        """Whatever the key holds; a file without it is refused."""
+        """The unchecked value of a key; a missing key is refused."""
         self._ask(key, required=True)
         if key not in self._left:
             raise SceneError(self.key(key), f"is missing; it must be {wanted}")
         return self._left.pop(key)
 
     def _ask(self, key: str, **what: Any) -> None:
-        """Note what is asked of a key: that it is there, a range, words, a kind of value."""
+        """Record a requirement on a key: presence, a range, a set of words, or a kind of value."""
         self._keys.setdefault(key, {}).update(what)
 
     def table(self, key: str) -> "Table":
@@ -58,18 +58,18 @@ class Table:
         return Table(self.key(key), self.required(key, "a table"))
 
     def optional_table(self, key: str) -> "Table | None":
-        """A table inside this one where the key is present, None where it is not."""
+        """A table inside this one; None if the key is missing."""
         value = self.value(key)
         return None if value is None else Table(self.key(key), value)
 
     def tables_by_name(self, key: str) -> "list[Table]":
-        """The tables of a table of tables, none where the key is not present."""
+        """The tables of a table of tables; empty if the key is missing."""
         outer = self.optional_table(key)
         self._ask(key, kind="tables by name")
         return [] if outer is None else [Table(outer.key(name), inner) for name, inner in outer._left.items()]
 
     def list_of_tables(self, key: str) -> "list[Table]":
-        """A list of tables, empty where the key is not present."""
+        """A list of tables; empty if the key is missing."""
         value = self.value(key, [])
         if not isinstance(value, list):
             raise SceneError(self.key(key), f"must be tables, [[{self.key(key)}]] with keys of their own", value)
@@ -81,13 +81,13 @@ class Table:
         return within.take(self.key(key), self.required(key, str(within)))
 
     def optional_number(self, key: str, within: Range) -> float | None:
-        """A number where the key is present, None where it is not."""
+        """A number in a range; None if the key is missing."""
         self._ask(key, within=within)
         value = self.value(key)
         return None if value is None else within.take(self.key(key), value)
 
     def numbers(self, part: type, *left_out: str) -> dict[str, float]:
-        """Numbers of the fields of a dataclass that have a range there, but for some; those without a default first."""
+        """Numbers of the fields of a dataclass that have a range, except `left_out`; required if without a default."""
         defaults = {field.name: field.default for field in fields(part)}
         values = {
             name: self.number(name, within) if defaults[name] is MISSING else self.optional_number(name, within)
@@ -97,7 +97,7 @@ class Table:
         return {name: value for name, value in values.items() if value is not None}
 
     def text(self, key: str, default: str | None = None) -> str:
-        """A string; `default` None makes the key required."""
+        """A string; the key is required if `default` is None."""
         self._ask(key, kind="text")
         value = self.required(key, "a string") if default is None else self.value(key, default)
         if not isinstance(value, str):
@@ -105,7 +105,7 @@ class Table:
         return value
 
     def choice(self, key: str, options: Iterable[str], default: str | None = None) -> str:
-        """One of a few words."""
+        """One of a few words; the key is required if `default` is None."""
         words = list(options)
         self._ask(key, words=words)
         wanted = "one of " + ", ".join(f'"{word}"' for word in words)
@@ -145,7 +145,7 @@ class Table:
         return [vector(f"{key}[{k}]", corner) for k, corner in enumerate(corners)]
 
     def finish(self) -> None:
-        """Refuse keys that have no meaning."""
+        """Refuse keys that have not been read: they have no meaning."""
         for key, value in self._left.items():
             place = f"[{self.name}]" if self.name else "a scene file"
             what = f"is not a key of {place}, which has {', '.join(self._keys)}"

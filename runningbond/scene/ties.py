@@ -1,4 +1,4 @@
-"""Ties: straight bars that pull two points together, or one to an anchor in space, and never push."""
+"""Ties: straight bars between two points, or from a point to an anchor in space, that carry tension only."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -12,23 +12,23 @@ from .ranges import ABOVE_ZERO, NotNegative, Positive, check_numbers, vector
 from .table import Table
 
 ANCHOR = -1
-"""Block of an end that touches none: a point fixed in space."""
+"""Block number of an end that touches no block: a point fixed in space."""
 
 
 @dataclass(frozen=True)
 class Tie:
-    """A bar as a file describes it.
+    """A bar as a scene file describes it.
 
     Parameters
     ----------
     start, end
-        Its ends [m].
+        Ends of the bar [m].
     area, young
         Cross-section [m²] and Young's modulus [Pa].
     yield_force
-        Force at which it yields [N].
+        Force at which the bar yields [N].
     preload
-        Force in it before anything moves [N]; at most the yield force.
+        Force in the bar before anything moves [N]; at most the yield force.
     """
 
     start: tuple[float, float]
@@ -55,9 +55,9 @@ class Ties:
     block : (nt, 2) int
         Blocks that hold the two ends, `ANCHOR` for an end that is fixed in space.
     ends : (nt, 2, 2) float
-        Those ends [m].
+        Coordinates of the ends [m].
     area, young, yield_force, preload : (nt,) float
-        As of `Tie`.
+        As in `Tie`.
     """
 
     block: Indices
@@ -78,17 +78,17 @@ class Ties:
 
     @property
     def length(self) -> Array:
-        """Length of each, ``(nt,)`` [m]."""
+        """Length of each tie, ``(nt,)`` [m]."""
         return np.asarray(np.hypot(*(self.ends[:, 1] - self.ends[:, 0]).T))
 
     @property
     def direction(self) -> Array:
-        """Unit vector of each from its first end to its second, ``(nt, 2)``."""
+        """Unit vector of each tie from its first end to its second, ``(nt, 2)``."""
         return np.asarray((self.ends[:, 1] - self.ends[:, 0]) / self.length[:, None])
 
     @property
     def stiffness(self) -> Array:
-        """Force per elongation of each, E A / L, ``(nt,)`` [N/m]."""
+        """Axial stiffness of each tie, E A / L, ``(nt,)`` [N/m]."""
         return np.asarray(self.young * self.area / self.length)
 
 
@@ -96,7 +96,7 @@ NO_TIES = Ties(np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2, 2)), *np.zeros(
 
 
 def read_tie(table: Table) -> Tie:
-    """The tie that a table of a file describes."""
+    """Read the tie that a table of a scene file describes."""
     with keys_of(table.name, "tie"):
         numbers = table.numbers(Tie, "yield_force")
         tie = Tie(table.vector("from"), table.vector("to"), yield_force=table.number("yield", ABOVE_ZERO), **numbers)
@@ -105,7 +105,7 @@ def read_tie(table: Table) -> Tie:
 
 
 def place_ties(ties: Sequence[Tie], blocks: Blocks, fixed: Mask) -> Ties:
-    """Find the blocks that hold the ends of ties; a `SceneError` for ties that nothing moves, or that are ambiguous."""
+    """Find the blocks that hold the ends of ties; a `SceneError` for ties without effect, or with an ambiguous end."""
     if not ties:
         return NO_TIES
     owner = np.full((len(ties), 2), ANCHOR)

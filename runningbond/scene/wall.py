@@ -28,63 +28,64 @@ from .ties import NO_TIES, Tie, Ties, place_ties
 
 Material = TypeVar("Material", BlockMaterial, JointMaterial)
 
-LIGHTEST = 1e-3
-"""Least mass, beside that of the blocks, that a beam has where the ground moves: lighter ones ask for shorter steps."""
+LEAST_BEAM_MASS = 1e-3
+"""Least mass of a beam, relative to that of the masonry, if the ground moves: lighter beams need shorter time steps."""
 
 SAME_COLUMN = 1e-9
-"""Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
+"""Difference in x, relative to the wall's size, below which blocks are in one column: far below contact tolerance."""
 
-CANCELLED = 1e-12
-"""Share of the largest live load on a block, or of the largest moment, that is what rounding leaves of none."""
+CANCELLATION = 1e-12
+"""Resultant of all live loads, relative to the largest of a single one, below which it is zero but for rounding."""
 
-FAR = 30.0
-"""How far ground that moves reaches beyond the wall, in its sizes: farther than records let walls slide on it.
+GROUND_REACH = 30.0
+"""Reach of moving ground beyond either end of the wall, in its longer side: farther than records make walls slide.
 
-Slips are told from its corners, and rounded as these are far: at ten thousand walls of stiff joints never rest.
+Slip is measured from the ground's corners, so its rounding error grows with the reach: at 10 000, walls with stiff
+joints never come to rest.
 """
 
-NEAR = 0.3
-"""Gap, in block sizes, that looks like one of a survey, or like a joint with mortar in it."""
+SMALL_GAP = 0.3
+"""Largest gap, in block sizes, that may be a survey inaccuracy or a mortar joint left out of the drawing."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Everything a model needs to know.
+    """Complete input of a model.
 
     Parameters
     ----------
     title
-        What tables and pictures call it.
+        Name in tables and pictures.
     blocks
-        Blocks of the wall and, last, the ground where there is one.
+        Blocks of the wall and, last, the ground if there is one.
     fixed : (nb,) bool
         Blocks that do not move: the ground, or a fixed first course.
     wall : (nb,) bool
-        Blocks of the wall: all but the ground.
+        Blocks of the wall: all except the ground.
     pins
-        Motions of blocks that are held.
+        Motions of blocks that are held at zero.
     joints
         Joints with at least one movable side.
     thickness
-        Out-of-plane thickness [m] of blocks whose material has none of its own.
+        Out-of-plane thickness [m] of blocks whose material does not define one.
     block_materials, joint_materials
         Materials of blocks and of joints, the default ones first.
     material_of_block : (nb,) int
         Material of each block.
     material_of_joint : (nj,) int
-        Material of each joint; of potential cracks inside blocks the one named ``inner_joint``.
+        Material of each joint; for potential cracks inside blocks the one named ``inner_joint``.
     load
         Dead and live load.
     bond
-        Nominal block where the wall is bonded on a lattice, None for a drawing.
+        Nominal block if the wall is bonded on a lattice, None for a drawing.
     ties, beam
-        Bars, and the stiff body across the top; None where there is none.
+        Bars, and the stiff body across the top; None if there is none.
     notes
         What was healed or left out when the wall was read.
     part_of : (nb,) int
-        Number that ``assign`` has for the block that each is, or is a part of; −1 for the beam and the ground.
+        Number in ``assign`` of the block that each block is, or is a part of; −1 for the beam and the ground.
     assigned
-        What became of each entry of ``assign``, in a line.
+        Result of each entry of ``assign``, one line each.
     """
 
     title: str
@@ -117,35 +118,35 @@ class Scene:
 
     @property
     def block(self) -> BlockMaterial:
-        """Material of the blocks that nothing else is said of."""
+        """Default material of the blocks."""
         return self.block_materials[0]
 
     @property
     def joint(self) -> JointMaterial:
-        """Material of the joints that nothing else is said of."""
+        """Default material of the joints."""
         return self.joint_materials[0]
 
     @cached_property
     def materials_of_joints(self) -> tuple[JointMaterial, ...]:
-        """Materials that joints are of, at least one; the default one is left out where every joint is of another."""
+        """Materials in use, at least one; the default material is left out if every joint has another one."""
         return tuple(self.joint_materials[k] for k in np.unique(self.material_of_joint)) or (self.joint,)
 
     @cached_property
     def material_number_of_joint(self) -> Indices:
-        """Which of `materials_of_joints` each joint is of, ``(nj,)``."""
+        """Index into `materials_of_joints` for each joint, ``(nj,)``."""
         return np.unique(self.material_of_joint, return_inverse=True)[1]
 
     @property
     def inner_joint(self) -> JointMaterial | None:
-        """Material of the potential cracks inside blocks; None where blocks do not crack."""
+        """Material of the potential cracks inside blocks; None if blocks do not crack."""
         return next((material for material in self.joint_materials if material.name == "inner_joint"), None)
 
     def with_block(self, **changes: Any) -> "Scene":
-        """A copy whose default block material differs in some fields."""
+        """A copy with some fields of the default block material changed."""
         return replace(self, block_materials=(replace(self.block, **changes), *self.block_materials[1:]))
 
     def with_joint(self, **changes: Any) -> "Scene":
-        """A copy whose default joint material differs in some fields."""
+        """A copy with some fields of the default joint material changed."""
         return replace(self, joint_materials=(replace(self.joint, **changes), *self.joint_materials[1:]))
 
     @cached_property
@@ -158,22 +159,22 @@ class Scene:
 
     @property
     def masonry(self) -> Mask:
-        """Blocks of the wall but for a beam on top, ``(nb,)``."""
+        """Mask of the wall's blocks, without a beam on top, ``(nb,)``."""
         return self.wall & ~self.is_beam
 
     @property
     def drive(self) -> Drive | None:
-        """How the beam is driven; None where it is not."""
+        """How the beam is driven; None if it is not driven."""
         return None if self.beam is None else self.beam.drive
 
     @property
     def drive_path(self) -> tuple[float, ...]:
-        """Horizontal displacements [m] that the beam is taken to, one after the other; none where a force drives it."""
+        """Turning points of the beam's prescribed horizontal displacement [m]; empty if a force drives the beam."""
         return () if self.drive is None else self.drive.path
 
     @cached_property
     def density(self) -> Array:
-        """Density of each block, ``(nb,)`` [kg/m³]; where the ground moves a beam weighs what it moves with."""
+        """Density of each block, ``(nb,)`` [kg/m³]; if the ground moves, a beam's is its inertial density."""
         return self.density_in_motion if self.history else self._given_density
 
     @cached_property
@@ -185,22 +186,22 @@ class Scene:
 
     @cached_property
     def inertial_density(self) -> Array:
-        """Density with which each block resists acceleration, ``(nb,)`` [kg/m³]: a beam's is at least the default one.
+        """Inertial density of each block, ``(nb,)`` [kg/m³]: for a beam at least the default density.
 
-        One of hardly any mass would ask models of motion for hardly any time step; at rest it makes no difference.
-        Where the ground moves it does: `density_in_motion`.
+        A beam of very small mass would force dynamic models to very short time steps. Static equilibrium does not
+        depend on this density, but the response to ground motion does: see `density_in_motion`.
         """
         return self.density_in_motion if self.history else self._with_beam_of(self.block.density)
 
     @cached_property
     def density_in_motion(self) -> Array:
-        """Density of each block as it vibrates, ``(nb,)`` [kg/m³]: its own, a beam's such that it has some mass."""
+        """Density of each block if the ground moves, ``(nb,)`` [kg/m³]: as given, but a beam has at least some mass."""
         mass = float(self._given_density[self.masonry] @ self._volume[self.masonry])
         beam = 0.0 if self.beam is None else float(self._volume[self.beam.block].sum())
-        return self._with_beam_of(LIGHTEST * mass / beam if beam else 0.0)
+        return self._with_beam_of(LEAST_BEAM_MASS * mass / beam if beam else 0.0)
 
     def _with_beam_of(self, least: float) -> Array:
-        """Densities, that of the beam a least one or its own."""
+        """Densities of all blocks as given, that of the beam raised to `least` [kg/m³] if it is lower."""
         density = self._given_density.copy()
         if self.beam is not None:
             density[self.beam.block] = np.maximum(density[self.beam.block], least)
@@ -213,7 +214,7 @@ class Scene:
 
     @cached_property
     def inertial_mass(self) -> Array:
-        """Mass with which each block resists acceleration, ``(nb,)`` [kg]; see `inertial_density`."""
+        """Inertial mass of each block, ``(nb,)`` [kg]; see `inertial_density`."""
         return frozen(self.inertial_density * self.thickness_of_blocks * self.blocks.area)
 
     @cached_property
@@ -226,7 +227,7 @@ class Scene:
 
     @cached_property
     def thickness_of_joints(self) -> Array:
-        """Out-of-plane thickness of each joint, ``(nj,)`` [m]: that of the thinner block, within the other's."""
+        """Out-of-plane thickness of each joint, ``(nj,)`` [m]: that of the thinner of the two blocks."""
         return frozen(self.thickness_of_blocks[self.joints.block].min(axis=1))
 
     @cached_property
@@ -236,32 +237,32 @@ class Scene:
 
     @cached_property
     def settlement(self) -> Settlement | None:
-        """The live load that moves a support; None where there is none."""
+        """The live load that moves a support; None if there is none."""
         return next((load for load in self.load.live if isinstance(load, Settlement)), None)
 
     @cached_property
     def history(self) -> History | None:
-        """The motion of the ground; None where it stays."""
+        """The ground motion; None if the ground does not move."""
         return next((load for load in self.load.live if isinstance(load, History)), None)
 
     @property
     def is_led(self) -> bool:
-        """Whether displacements are prescribed to it, not loads."""
+        """Whether displacements of a support or of the beam are prescribed, in place of loads."""
         return self.settlement is not None or len(self.drive_path) > 0
 
     @cached_property
     def support_motion(self) -> Array:
-        """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``: that of moving supports."""
+        """Prescribed motion of supports at λ = 1, ``(nb, 3)``: of each block's centroid [m], and its rotation [rad]."""
         return frozen(np.zeros((len(self.blocks), 3)) if self.settlement is None else self.settlement.motion(self))
 
     @cached_property
     def late_pins(self) -> Pins:
-        """Motions of blocks that are held once the dead load is on."""
+        """Motions of blocks that are held at zero after the dead load has been applied."""
         return NO_PINS if self.beam is None else self.beam.late_pins(self.blocks.centroid[self.beam.block])
 
     @property
     def extras(self) -> tuple[str, ...]:
-        """Keys of what a model has to know of by name, or refuses."""
+        """Keys of the features that a model refuses unless it names them in `Model.takes`."""
         given = {
             "tie": len(self.ties) > 0,
             "beam": self.beam is not None,
@@ -285,7 +286,7 @@ class Scene:
         return self._sum(Forces.on(self), [load.forces(self) for load in self.load.live])
 
     def forces_by_piece(self, edges: Array) -> tuple[Forces, Forces]:
-        """As `dead_forces` and `live_forces`, each at points in one of the pieces between edges ``(n, 2, 2)`` [m]."""
+        """As `dead_forces` and `live_forces`, with line loads cut at edges ``(n, 2, 2)`` [m] of elements."""
         dead, live = ([load.forces_by_piece(self, edges) for load in one] for one in (self.load.dead, self.load.live))
         return self._sum(self._weight, dead), self._sum(Forces.on(self), live)
 
@@ -300,15 +301,15 @@ class Scene:
 
     @cached_property
     def control_point(self) -> tuple[Indices, Array, Array]:
-        """Blocks, point and direction at which displacements are read: those of the first live load."""
+        """Blocks, point and direction for which displacements are recorded: those of the first live load."""
         return self.load.live[0].control(self)
 
     @cached_property
     def column_by_column(self) -> Indices:
-        """Blocks from left to right and, within a column, from the bottom up; columns of alternate courses apart.
+        """Order of blocks from left to right and, within a column, from the bottom up; alternate courses apart.
 
-        Where they are numbered so, joints of one kind come in long runs, in which one joint's blocks follow the
-        last one's; where the two kinds of columns are as high, runs go on from one column to the next.
+        With this numbering, joints of one kind come in long runs, in which both block numbers increase by one from
+        joint to joint; if the two kinds of columns are of equal height, runs continue from one column to the next.
         """
         low, high = self.blocks.extent(self.wall)
         pitch = self.bond.width if self.bond else float((high - low)[0])
@@ -318,7 +319,7 @@ class Scene:
 
     @property
     def block_size(self) -> float:
-        """Smaller side of the blocks [m]: the height of the lowest, or the nominal width of a bonded wall's."""
+        """Smallest block dimension [m]: `lowest_block`, or the nominal block width of a bonded wall if that is less."""
         return min(self.lowest_block, self.bond.width) if self.bond else self.lowest_block
 
     @property
@@ -329,16 +330,16 @@ class Scene:
 
     @property
     def block_sizes(self) -> Array:
-        """Size of each block [m], ``(nb,)``: its smaller side, and not less than that of the wall's blocks.
+        """Size of each block [m], ``(nb,)``: the smaller side of its bounding box, at least `block_size`.
 
-        A large block on small ones leans, and settles, by more than a small one's share before it falls.
+        A large block on small ones leans and settles, before it falls, by more than the size of a small block suggests.
         """
         low, high = self.blocks.boxes
         return np.asarray(np.maximum((high - low).min(axis=1), self.block_size))
 
     @property
     def lowest_block(self) -> float:
-        """Smallest height of a movable block [m]; of the beam only where nothing else moves."""
+        """Smallest height of a movable block [m]; the beam counts only if nothing else can move."""
         low, high = self.blocks.boxes
         movable = ~self.fixed
         masonry = movable & ~self.is_beam
@@ -346,7 +347,7 @@ class Scene:
 
 
 def check_scene(scene: object) -> None:
-    """Refuse what is no scene, as the wall of Python that has one, or a file's name."""
+    """Refuse an object that is not a `Scene`, such as a wall of the Python interface or a file name."""
     if not isinstance(scene, Scene):
         raise SceneError("scene", "must be a Scene: of a Wall it is wall.scene, of a file read_scene gives it", scene)
 
@@ -373,36 +374,36 @@ def build_scene(
     ties: Sequence[Tie] = (),
     notes: Sequence[str] = (),
 ) -> Scene:
-    """Join blocks into a wall, put it on its support, and check that it can be analysed.
+    """Join blocks into a wall on its support, and check that the scene can be analysed.
 
     Parameters
     ----------
     polygons : list of (n, 2) float
         Blocks of the wall [m], counter-clockwise.
     grounds : list of (n, 2) float
-        Outlines of the ground; without any a flat strip is laid under the lowest course where the support needs one.
+        Outlines of the ground; if empty, a flat strip is added under the lowest course if the support needs one.
     inner_joint
         Material of a potential crack on the vertical axis of every block.
     whole_up_to
-        Width up to which blocks have none [m].
+        Width [m] up to which blocks have no potential crack.
     materials, joints
-        Further materials of blocks and joints, by their names.
+        Further materials of blocks and joints.
     assignments
-        Which blocks and joints are of them; later ones win.
+        Materials assigned to blocks and joints; later entries win.
     layers
         Layer of each block of a drawing.
     material_of
-        Names of the materials of single blocks, before any assignment.
+        Names of the materials of individual blocks, before any assignment.
     beam, ties
-        A stiff body to lay across the top, and bars.
+        A stiff body across the top, and bars.
     notes
-        What there is to say of how the wall was read.
+        Remarks on how the wall was read.
 
     Raises
     ------
     SceneError
-        For blocks that overlap or touch nothing that is held, for an inset that leaves no joint, for a load that
-        nothing takes up, for an assignment that chooses nothing, for a tie that holds nothing.
+        For blocks that overlap or are not connected to the support, for an inset that leaves no joint, for a load that
+        acts on nothing movable, for an assignment that selects nothing, for a tie that holds nothing.
     """
     one_of("support.kind", support, SUPPORT_KINDS)
     if grounds and support in ("corners", "pinned-corners"):
@@ -464,7 +465,7 @@ def build_scene(
 
 
 def _in_use(materials: Sequence[Material], of: Indices) -> tuple[tuple[Material, ...], Indices, list[str]]:
-    """Materials that anything is of, those of the tables without a name, their numbers, and notes on the others."""
+    """Materials in use or of the unnamed tables, the renumbered materials of `of`, and notes on materials left out."""
     kept = [k for k, each in enumerate(materials) if table_of(each) == each.name or (of == k).any()]
     unused = [each for k, each in enumerate(materials) if k not in kept]
     notes = [f"{table_of(each)}: is assigned to nothing; it is left out" for each in unused]
@@ -474,11 +475,11 @@ def _in_use(materials: Sequence[Material], of: Indices) -> tuple[tuple[Material,
 def _bodies(
     polygons: Sequence[Array], grounds: Sequence[Array], beam: Beam | None, support: SupportKind, load: Load
 ) -> tuple[Blocks, Beam | None, int]:
-    """All bodies: the wall's blocks, the beam, which knows its number then, and the grounds; how many of the last."""
+    """All bodies (blocks of the wall, the beam, grounds), the beam with its block number, and the number of grounds."""
     blocks = Blocks.from_polygons(polygons)
     if not grounds and support == "base":
         shaken = any(isinstance(live, History) for live in load.live)
-        grounds = [_strip_below(blocks, FAR if shaken else 1.0)]
+        grounds = [_strip_below(blocks, GROUND_REACH if shaken else 1.0)]
     settlements = [live for live in load.live if isinstance(live, Settlement)]
     grounds = cut_ground(grounds, settlements, blocks.tolerance)
     bodies = [*polygons]
@@ -491,7 +492,7 @@ def _bodies(
 
 
 def _support(kind: SupportKind, blocks: Blocks, wall: Mask) -> tuple[Mask, Pins]:
-    """Which bodies are held, ``(nb,)``, and the pins of the others."""
+    """Mask of fixed bodies, ``(nb,)``, and the pins of the others."""
     if kind == "fixed-first-course":
         return ~wall | first_course(blocks, wall), NO_PINS
     if kind in ("corners", "pinned-corners"):
@@ -500,7 +501,7 @@ def _support(kind: SupportKind, blocks: Blocks, wall: Mask) -> tuple[Mask, Pins]
 
 
 def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
-    """Joints with a movable side; those inside what was one block come last."""
+    """Joints with a movable side; joints between parts of one block come last."""
     joints = find_joints(blocks)
     movable = ~fixed[joints.block].all(axis=1)
     a, b = part_of[joints.block].T
@@ -510,7 +511,7 @@ def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
 
 
 def _strip_below(blocks: Blocks, far: float) -> Array:
-    """Ground that reaches so many sizes of the wall beyond it on either side: by one for a toppling wall to land on."""
+    """Ground strip that reaches `far` sizes of the wall beyond either end; a toppling wall needs one to land on."""
     low, high = blocks.extent()
     size = max(high - low)
     depth, reach = 0.1 * size, far * size
@@ -548,7 +549,7 @@ def _check(scene: Scene) -> None:
 
 
 def _check_forces(scene: Scene, key: str, load: Action, forces: object) -> None:
-    """Refuse what are no forces, and those that are not finite or leave all that moves alone."""
+    """Refuse a load whose forces are not of type `Forces`, not finite, or all zero on movable blocks."""
     if not isinstance(forces, Forces):
         raise SceneError(f"{key}: {type(load).__name__}.forces", "must return Forces", forces)
     moves = ~scene.fixed
@@ -558,21 +559,21 @@ def _check_forces(scene: Scene, key: str, load: Action, forces: object) -> None:
 
 
 def _cancel(scene: Scene) -> bool:
-    """Whether live loads leave no force and no moment on any block that moves."""
+    """Whether the live loads cancel out: no resulting force and no moment on any movable block."""
     each = [load.forces(scene).resultants(scene) for load in scene.load.live]
     most = np.max(np.abs(each), axis=(0, 1))
-    return bool((np.abs(np.sum(each, axis=0)) <= CANCELLED * most)[~scene.fixed].all())
+    return bool((np.abs(np.sum(each, axis=0)) <= CANCELLATION * most)[~scene.fixed].all())
 
 
 def table_of(material: BlockMaterial | JointMaterial) -> str:
-    """Table of a scene file that a material is described in."""
+    """Name of the scene file's table that describes a material."""
     if material.name in ("block", "joint", "inner_joint"):
         return material.name
     return f"{'materials' if isinstance(material, BlockMaterial) else 'joints'}.{material.name}"
 
 
 def _refuse_floating_blocks(scene: Scene) -> None:
-    """Every movable block hangs together with something that is held."""
+    """Refuse movable blocks that no chain of joints connects to anything fixed or pinned."""
     component = components(scene.joints.block, len(scene.blocks))
     held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block[scene.pins.direction.any(axis=1)])
     floating = ~np.isin(component, component[held])
@@ -582,10 +583,10 @@ def _refuse_floating_blocks(scene: Scene) -> None:
 
 
 def _gap_to(scene: Scene, floating: Mask) -> str:
-    """How far floating blocks ``(nb,)`` are from what is held, where they nearly touch it."""
+    """Part of an error message on the gap between floating blocks ``(nb,)`` and the others; empty if it is wide."""
     free, standing = (shapely.union_all(scene.blocks.shapes(np.flatnonzero(which))) for which in (floating, ~floating))
     gap = float(shapely.distance(free, standing))
-    if not 0 < gap < NEAR * scene.block_size:
+    if not 0 < gap < SMALL_GAP * scene.block_size:
         return ""
     bridged = f"joints bridge {scene.blocks.tolerance:.2g} m"
     remedy = "in drawings and outlines wall.heal closes gaps, and wall.expand fills those with mortar in them"

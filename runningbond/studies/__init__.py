@@ -1,4 +1,4 @@
-"""Studies: cases, rows of what was measured, edges beside theory, and pages of them, on one skeleton."""
+"""Studies: cases, rows of measured values, edges compared with theory, and report pages, all built alike."""
 
 from .study import Case, Chart, Edge, Part, Row, Rows, Study
 

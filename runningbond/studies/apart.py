@@ -1,6 +1,6 @@
-"""A case in a process of its own, on one thread, which ends when it has worked too long or the study is stopped.
+"""A case in its own single-threaded process, which ends if it takes too much CPU time or if the study is stopped.
 
-``python -m runningbond.studies.apart MODULE FUNCTION CASE`` prints what a function measures of a case, as JSON.
+``python -m runningbond.studies.apart MODULE FUNCTION CASE`` prints what a function measures for a case, as JSON.
 """
 
 import json
@@ -25,19 +25,19 @@ except ImportError:  # Windows
     resource = None
 
 ENDED = -signal.SIGXCPU if resource else 152
-"""Exit code of a process that has worked too long."""
+"""Exit code of a process that exceeded its CPU time."""
 
-LONGEST = 60  # processor seconds after which a run is ended, from `limit_time` on
+LONGEST = 60  # CPU time [s] after which a run is ended, counted from the call of `limit_time`
 TOO_LONG = "too long"  # status of a case whose run took more than `LONGEST`
-POLL = 0.2  # seconds between two looks at a process
+POLL = 0.2  # time between two checks of a process [s]
 
 
 class Ended(Exception):
-    """A process ended without an answer."""
+    """A process ended without a result."""
 
 
 def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = None) -> Row:
-    """Measure a case that JSON has words for in a fresh process, until `stop` is set; `Ended` if that has no answer."""
+    """Measure a JSON-serialisable case in a fresh process, until `stop` is set; `Ended` if there is no result."""
     command = [sys.executable, "-P", "-m", __name__, measure.__module__, measure.__name__, json.dumps(case)]
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     path = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]))
@@ -63,7 +63,7 @@ def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = 
 
 
 def limit_time() -> None:
-    """Let the system, or a thread where it cannot, end this process once it has worked `LONGEST` seconds more."""
+    """End this process after `LONGEST` more seconds of CPU time, by the system or, where it cannot, by a thread."""
     global _limit
     if resource is None:
         if _limit is None:
@@ -85,7 +85,7 @@ def _watch() -> None:
 
 
 if __name__ == "__main__":
-    # The study ends this process; a model that is interrupted would end with what it has, as if that were its answer.
+    # Only the study ends this process: an interrupted model would return its partial result as if it were its answer.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     module, function, words = sys.argv[1:]
     print(json.dumps(getattr(import_module(module), function)(*json.loads(words))))

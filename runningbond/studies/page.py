@@ -1,4 +1,4 @@
-"""The page of one or more studies, in Markdown beside its charts and as one HTML file that needs nothing else."""
+"""The page of one or more studies: Markdown with separate charts, and one self-contained HTML file."""
 
 import html
 import re
@@ -21,12 +21,12 @@ from .store import failures
 from .study import Edge, Rows, Study
 
 LONG = 30
-"""Rows beyond which a table is folded."""
+"""Number of rows above which a table is folded."""
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A chart that is drawn: its file and what it shows."""
+    """A chart that has been drawn: its file and its caption."""
 
     path: Path
     caption: str
@@ -37,7 +37,7 @@ Measured: TypeAlias = Sequence[tuple[Study, Rows]]  # experiments and their rows
 
 
 def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -> list[Path]:
-    """Write ``NAME.md`` and ``report.html``; returns the files of the page, its charts among them."""
+    """Write ``NAME.md`` and ``report.html``; returns the files of the page, including its charts."""
     written = [folder / f"{name}.md", folder / "report.html"]
     write_atomically(written[0], "\n".join(map(_markdown, blocks)).encode())
     heads = [block[3:] for block in blocks if isinstance(block, str) and block.startswith("## ")]
@@ -47,27 +47,27 @@ def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -
 
 
 def summary(measured: Measured) -> Sheet:
-    """Experiment by experiment: where the method may be trusted, and what a user gets beyond."""
+    """Table of all experiments: where the method may be trusted, and what a user gets beyond that."""
     heads = ("experiment", "what is driven", "edges", "may be trusted where", "beyond it you get")
     body = [(x.name, x.title, agreement(x.edges(rows)), x.trusted, x.beyond) for x, rows in _whole(measured)]
     return Sheet("Where each method may be trusted", heads, body)
 
 
 def page(measured: Measured, folder: Path) -> list[Block]:
-    """The page; charts are drawn into a folder."""
+    """The page, with its charts drawn into a folder."""
     sections = [block for study, rows in _whole(measured) for block in section(study, rows, folder)]
     return ["# Where the methods fail", summary(measured), *sections, *failed(measured)]
 
 
 def off(measured: Measured) -> list[str]:
-    """Edges that do not lie where theory has them."""
+    """Edges that do not agree with theory."""
     edges = [(study.name, edge) for study, rows in _whole(measured) for edge in study.edges(rows)]
     wrong = [(name, edge) for name, edge in edges if edge.agrees is False]
     return [f"{name}: {edge.what}: measured {edge.measured:.6g}, by theory {edge.theory:.6g}" for name, edge in wrong]
 
 
 def failed(measured: Measured) -> list[str]:
-    """Experiments that ended in an error, and its words."""
+    """Experiments that ended in an error, with its message."""
     return [f"{study.name} ended in an error: {words}" for study, rows in measured for words in failures(rows)]
 
 
@@ -76,14 +76,14 @@ def _whole(measured: Measured) -> Measured:
 
 
 def section(study: Study, rows: Rows, folder: Path) -> list[Block]:
-    """An experiment on the page of all: where it may be trusted, its charts, its edges and its rows."""
+    """The section of one experiment: where it may be trusted, its charts, its edges and its rows."""
     blocks: list[Block] = [f"## {study.title}", f"May be trusted: {study.trusted}", f"Beyond: {study.beyond}"]
     blocks += [*draw_charts(study, rows, folder), edges_sheet(study.edges(rows)), *study.tables(rows)]
     return [*blocks, f"`runningbond stability {study.name}` measures it."]
 
 
 def draw_charts(study: Study, rows: Rows, folder: Path) -> list[Picture]:
-    """Draw the charts of a study into a folder, if there is a row."""
+    """Draw the charts of a study into a folder, if there are any rows."""
     pictures = []
     for chart in study.charts if any(rows.values()) else ():
         figure = Figure(figsize=chart.size, layout="constrained")
@@ -95,7 +95,7 @@ def draw_charts(study: Study, rows: Rows, folder: Path) -> list[Picture]:
 
 
 def write_picture(figure: Figure, path: Path, caption: str, *, dots: int) -> Picture:
-    """Write a chart, with so many dots an inch and no frames round its axes."""
+    """Write a chart, with a resolution of `dots` per inch and without frames around its axes."""
     for axes in figure.axes:
         bare(axes)
     write_atomically(path, to_png(figure, dots))
@@ -103,7 +103,7 @@ def write_picture(figure: Figure, path: Path, caption: str, *, dots: int) -> Pic
 
 
 def edges_sheet(edges: Sequence[Edge]) -> Sheet:
-    """Edges, theory beside what was measured."""
+    """Table of edges, with theory beside the measured values."""
     rows = []
     for edge in edges:
         cells = ["–"] * 3
@@ -115,7 +115,7 @@ def edges_sheet(edges: Sequence[Edge]) -> Sheet:
 
 
 def agreement(edges: Sequence[Edge]) -> str:
-    """How many edges lie where theory has them."""
+    """Number of edges that agree with theory, as text."""
     compared = [edge.agrees for edge in edges if edge.agrees is not None]
     return f"{sum(compared)} of {len(compared)} as theory has them" if compared else f"{len(edges)} measured"
 
@@ -127,7 +127,7 @@ def _markdown(block: Block) -> str:
 
 
 def _link(name: str) -> str:
-    """A file's name as Markdown takes it."""
+    """File name as a link target in Markdown."""
     return f"<{name}>" if set(name) & set(" ()") else name
 
 
@@ -145,7 +145,7 @@ def _html(block: Block) -> str:
 
 
 def _in_line(text: str) -> str:
-    """Markdown within a line as HTML."""
+    """Convert Markdown within a line to HTML."""
     text = html.escape(text, quote=False)
     for mark, tag in ((r"\*\*", "b"), (r"\*", "i"), ("`", "code")):
         text = re.sub(f"{mark}(.+?){mark}", rf"<{tag}>\1</{tag}>", text)

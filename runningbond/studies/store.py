@@ -1,7 +1,7 @@
-"""The table of a study: a row is kept as soon as it is measured, and taken again while nothing it depends on changes.
+"""The table of a study: a row is stored as soon as it is measured, and reused while nothing that it depends on changes.
 
-``NAME.csv`` is written whole or not at all. Each row carries a key, the digest of all that it depends on, and a seal,
-the digest of the row itself under its heads.
+``NAME.csv`` is written atomically. Each row carries a key, the digest of everything that it depends on, and a seal, the
+digest of the row itself with its column heads.
 """
 
 import csv
@@ -30,7 +30,7 @@ Where: TypeAlias = tuple[str, Case]  # the name of a part, and one of its cases
 def run_study(
     study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
 ) -> dict[str, list[Row]]:
-    """Measure what is not in a folder's table yet, telling `progress` each case in words; every row, by parts."""
+    """Measure the cases missing in a folder's table, and report each case to `progress`; returns all rows, by part."""
     kept = kept_rows(study, folder)
 
     def tell(where: Where) -> None:
@@ -46,22 +46,22 @@ def run_study(
 
 
 def failures(rows: Rows) -> list[str]:
-    """Cases that ended in an error, and its words."""
+    """Cases that ended in an error, with its message."""
     return [", ".join(map(str, row.values())) for own in rows.values() for row in own if FAILURE in row]
 
 
 def is_complete(study: Study, folder: Path) -> bool:
-    """Whether every case is in the table."""
+    """Whether the table has every case."""
     return len(kept_rows(study, folder)) == len(study.cases)
 
 
 def table_path(study: Study, folder: Path) -> Path:
-    """The table's file."""
+    """File of the table."""
     return folder / f"{study.name}.csv"
 
 
 def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
-    """Rows of the table that are still good; what ended in an error is tried again."""
+    """Rows of the table that are still valid, except cases that ended in an error: these are tried again."""
     try:
         rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
     except (OSError, ValueError, csv.Error):
@@ -71,7 +71,7 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
 
 
 def csv_text(study: Study, rows: dict[Where, Row]) -> str:
-    """The table as CSV, in the order of the study; `kept_rows` has the same rows again, to the last bit."""
+    """The table as CSV, in the order of the study; `kept_rows` reads the same rows back, to the last bit."""
     columns = list(dict.fromkeys(column for row in rows.values() for column in row))
     lines = [["part", *columns, "key", "seal"]]
     for where in study.cases:
@@ -84,7 +84,7 @@ def csv_text(study: Study, rows: dict[Where, Row]) -> str:
 
 
 def read_csv(text: str) -> dict[str, Row]:
-    """Rows of a table by their keys; damaged ones are left out."""
+    """Rows of a table by their keys, without damaged ones."""
     reader = csv.reader(io.StringIO(text))
     heads = next(reader, [])
     return {
@@ -95,12 +95,12 @@ def read_csv(text: str) -> dict[str, Row]:
 
 
 def _text(value: object, *, plain: bool) -> str:
-    """An entry as a cell: words as they are if they are known anyway or read as what they are, all else as JSON."""
+    """An entry as a cell: text as it is if it belongs to the case or reads back unchanged, everything else as JSON."""
     if value is None or value == "":
         return ""
     if isinstance(value, str) and (plain or value == _value(value)):
         return value
-    return json.dumps(value, default=np.generic.item)  # numbers of NumPy as those of Python
+    return json.dumps(value, default=np.generic.item)  # NumPy numbers as Python numbers
 
 
 def _value(cell: str) -> object:
@@ -111,7 +111,7 @@ def _value(cell: str) -> object:
 
 
 def _seal(heads: Sequence[str], cells: Sequence[str]) -> str:
-    """Digest of a row and of what its entries are called."""
+    """Digest of a row and its column heads."""
     return _digest("\0".join([*heads, *cells]))[:16]
 
 
@@ -120,7 +120,7 @@ def _digest(text: str) -> str:
 
 
 def _key(study: Study, where: Where) -> str:
-    """Digest of all that the row of a case depends on."""
+    """Digest of everything that the row of a case depends on."""
     return _digest(f"{code_digest()} {sources_digest(tuple(study.sources))} {where!r} {study.depends(where[1])}")
 
 
@@ -136,7 +136,7 @@ def sources_digest(sources: tuple[Path, ...]) -> str:
 
 
 def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple[Where, Row]]:
-    """Rows as they come: one after another in this thread, or from threads that each wait for a process."""
+    """Rows as they are measured: one after another in this thread, or by threads that each wait for a process."""
     stop = Event()
     if jobs == 1:
         yield from ((where, _row(study, where, stop)) for where in cases)

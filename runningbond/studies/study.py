@@ -1,7 +1,7 @@
-"""What a study is: cases, what is measured of each, the edges that come of it, and charts.
+"""Parts of a study: cases, what is measured for each case, the resulting edges, and charts.
 
-A study has parts. A part has cases, tuples of words and numbers, and a function that measures one of them. A case and
-what was measured of it are a row of the study's table; tables, edges and charts are made of rows and of nothing else.
+A study has parts. A part has cases, tuples of words and numbers, and a function that measures one case. A case and its
+measured values form a row of the study's table; tables, edges and charts are made only from rows.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -13,25 +13,25 @@ from matplotlib.figure import Figure
 
 from runningbond.pictures.sheet import Sheet
 
-Case: TypeAlias = tuple[Any, ...]  # words and numbers that tell what is measured
-Row: TypeAlias = dict[str, Any]  # a case and what was measured of it, by columns; lists are for charts alone
+Case: TypeAlias = tuple[Any, ...]  # words and numbers that define what is measured
+Row: TypeAlias = dict[str, Any]  # a case and its measured values, by column; lists are for charts only
 Rows: TypeAlias = Mapping[str, Sequence[Row]]  # rows of a study, by the names of its parts
-FAILURE = "failure"  # column that holds the words of the error in which a case ended, if it did
+FAILURE = "failure"  # column with the error message of a case that ended in an error
 PACKAGE = Path(__file__).parents[1]
 
 
 @dataclass(frozen=True)
 class Edge:
-    """An edge beyond which a method fails."""
+    """A limit beyond which a method fails."""
 
-    what: str  # the edge, with its unit: ``largest ω dt with local damping 0.5``
+    what: str  # name with unit: ``largest ω dt with local damping 0.5``
     measured: float  # where the method began to fail
-    theory: float | None = None  # where it must, by theory
-    tolerance: float | None = None  # relative difference that the study allows itself
+    theory: float | None = None  # where it must fail by theory
+    tolerance: float | None = None  # allowed relative difference between both
 
     @property
     def error(self) -> float | None:
-        """Relative difference of measurement and theory."""
+        """Relative difference between measurement and theory; None without a theory."""
         return None if self.theory is None else abs(self.measured - self.theory) / abs(self.theory)
 
     @property
@@ -42,25 +42,25 @@ class Edge:
 
 @dataclass(frozen=True)
 class Part:
-    """Cases of one kind, in the order in which they are measured, and what their entries are called."""
+    """Cases of one kind, in the order in which they are measured, and the column names of their entries."""
 
     columns: tuple[str, ...]
     cases: Sequence[Case]
-    measure: Callable[..., Row]  # takes the entries of a case as its arguments, and returns what comes of it
+    measure: Callable[..., Row]  # takes the entries of a case as arguments, returns the measured values
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart: what it shows, and what draws it on an empty figure of a size [in]."""
+    """A chart: its caption, and the function that draws it on an empty figure of a given size [in]."""
 
     caption: str
     draw: Callable[[Figure, Rows], None]
-    name: str = ""  # of its file, without suffix; where none is given, that of the study
+    name: str = ""  # file name without suffix; by default the name of the study
     size: tuple[float, float] = (8, 4.6)
 
 
 def all_rows(rows: Rows) -> list[Sheet]:
-    """Every part as a table: columns with a word or a number in any row, lists left to charts."""
+    """Every part as a table, with the columns that have a value in any row, except lists."""
     sheets = []
     for part, own in rows.items():
         every = dict.fromkeys(head for row in own for head in row)
@@ -70,28 +70,28 @@ def all_rows(rows: Rows) -> list[Sheet]:
 
 
 def cell(value: object) -> str:
-    """An entry of a row, as tables print it."""
+    """An entry of a row as text for tables."""
     return "–" if value is None else f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
 @dataclass(frozen=True)
 class Study:
-    """A study, and in fixed words where its method may be trusted; the numbers are edges.
+    """A study, with fixed text on where its method may be trusted; the numbers are in its edges.
 
-    A row that has a column `measured` is an edge itself, with `theory` and `allowed` beside it where there is one.
+    A row that has a column `measured` is itself an edge, with `theory` and `allowed` if there is a theory.
     """
 
-    name: str  # on the command line, and of its table
+    name: str  # on the command line, and of the file of its table
     title: str  # what is studied, in a few words
-    parts: Mapping[str, Part]  # its cases, by the names of its parts
+    parts: Mapping[str, Part]  # its cases, by part
     charts: Sequence[Chart]
-    trusted: str = ""  # where the method may be trusted,
-    beyond: str = ""  # and what a user is told beyond
-    fits: Callable[[Rows], list[Edge]] = lambda rows: []  # edges that are read off several rows
+    trusted: str = ""  # where the method may be trusted
+    beyond: str = ""  # what a user gets beyond that
+    fits: Callable[[Rows], list[Edge]] = lambda rows: []  # edges that are derived from several rows
     tables: Callable[[Rows], list[Sheet]] = all_rows  # tables of the page
-    sources: Sequence[Path] = (PACKAGE,)  # code beside the computing rooms whose change makes rows invalid
-    depends: Callable[[Case], str] = lambda case: ""  # what else the row of a case depends on, as words
-    apart: bool = False  # whether each case is measured in a process of its own
+    sources: Sequence[Path] = (PACKAGE,)  # code whose change invalidates rows, besides the computing packages
+    depends: Callable[[Case], str] = lambda case: ""  # anything else that the row of a case depends on, as text
+    apart: bool = False  # whether each case is measured in its own process
 
     @property
     def cases(self) -> list[tuple[str, Case]]:
@@ -99,11 +99,11 @@ class Study:
         return [(name, case) for name, part in self.parts.items() for case in part.cases]
 
     def entries(self, where: tuple[str, Case]) -> Row:
-        """A case of a part, by columns."""
+        """The entries of a case, by column."""
         return dict(zip(self.parts[where[0]].columns, where[1], strict=True))
 
     def edges(self, rows: Rows) -> list[Edge]:
-        """Every edge: rows that are one, and those that are read off several rows."""
+        """All edges: rows that are edges, and edges that are derived from several rows."""
         edges = []
         for name, part in self.parts.items():
             for row in rows[name]:

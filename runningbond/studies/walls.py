@@ -1,13 +1,13 @@
-"""Walls that studies are done on: blocks and walls whose collapse load is known.
+"""Walls used in the studies: blocks and walls whose collapse load is known.
 
-While a wall falls in one motion, its blocks' displacements u φ with the largest translation u, the loads drive it by
-(λ − λ_c) F, F = f_live · φ, against the inertia M = Σ m φ² of its blocks. Local damping takes a share α of every
-unbalanced force, and mass-proportional damping c M u̇ of the driving one:
+While a wall collapses in one mechanism, with block displacements u φ and largest translation u, it is driven by
+(λ − λ_c) F, F = f_live · φ, against the inertia M = Σ m φ² of its blocks. Local damping reduces every unbalanced force
+by a share α, and mass-proportional damping opposes the driving force by c M u̇:
 
     (M / F) ü = (1 − α) ((λ − λ_c) − c (M / F) u̇).                                                            (1)
 
-Friction follows the pressure, and the pressure the inertia of what moves; (1) leaves that out. It is exact for a
-block, whose pressure does not change.
+Friction depends on the pressure, and the pressure on the inertia of the moving blocks, which (1) neglects. Equation (1)
+is exact for a single block, whose pressure does not change.
 """
 
 from dataclasses import dataclass
@@ -26,13 +26,13 @@ from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, Stiffne
 
 from .study import Row
 
-INSET = 0.02  # distance of contacts from the ends of the joints [m] with which λ of W1 to W3 is unique
-RAMP = 4  # length of a ramp to a load, in times that the wall took to rest under its weight
-SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the block that slides, and b/h of the one that topples
+INSET = 0.02  # distance of contacts from the joint ends [m]; makes λ of W1 to W3 unique
+RAMP = 4  # length of a ramp to a load, relative to the time the wall took to rest under its weight
+SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the sliding block, and b/h of the toppling one
 BRICK = BlockMaterial(1800.0)
-HOLDS = 1e15  # cohesion and tensile strength [Pa] that no motion of a study comes near
+HOLDS = 1e15  # cohesion and tensile strength [Pa] that are never reached in a study
 Box: TypeAlias = tuple[float, float, float, float]  # left, bottom, width, height [m]
-TABLES: dict[str, dict[str, Any]] = {  # of a scene file, where nothing else is said
+TABLES: dict[str, dict[str, Any]] = {  # default tables of a scene file
     "block": {"density": 1800.0, "young": 2e10, "poisson": 0.2},
     "joint": {"friction": 0.6, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}},
     "support": {"kind": "base"},
@@ -47,7 +47,7 @@ def boxes(*places: Box, joint: JointMaterial, block: BlockMaterial = BRICK) -> S
 
 
 def one_block(width: float, height: float, friction: float, stiffness: float) -> Scene:
-    """A dry box [m] of 1800 kg/m³ on a joint of tan φ and one stiffness, normal and shear [Pa/m]."""
+    """A dry block (sizes in m, 1800 kg/m³) on a joint with tan φ and equal normal and shear stiffness [Pa/m]."""
     joint = JointMaterial(friction, elasticity=Stiffness(stiffness, stiffness))
     return boxes((0, 0, width, height), joint=joint, block=BlockMaterial(1800.0, 1e12, 0.0))
 
@@ -63,21 +63,21 @@ def bonded(scene: Scene) -> Scene:
 
 
 def outcome_row(outcome: Outcome) -> Row:
-    """What a user is told of a collapse, as columns of a table."""
+    """An outcome of a collapse as columns of a table."""
     bracket = {"λ": outcome.multiplier, "λ lower": outcome.lower, "λ upper": outcome.upper}
     return {"status": outcome.status, **bracket, "steps": outcome.steps, "message": outcome.message}
 
 
 @dataclass(frozen=True, eq=False)
 class KnownWall:
-    """A wall under its weight and a lateral load, with the load that brings it down and its motion then."""
+    """A wall under its weight and a lateral load, with its collapse load and collapse mechanism."""
 
     scene: Scene
-    multiplier: float  # λ at which it falls
+    multiplier: float  # λ at collapse
     system: BlockSystem  # its rigid blocks
-    far: float  # displacement [m] by which the suite judges whether it falls
-    inertia: float  # M / F of (1) [s²/m]: what the wall weighs in its motion, for each newton that drives it
-    unbalanced: float  # largest unbalanced force, in the system's units, for each unit of λ − λ_c
+    far: float  # displacement [m] at which the suite judges whether it collapses
+    inertia: float  # M / F of (1) [s²/m]: inertia of the mechanism per newton of driving force
+    unbalanced: float  # largest unbalanced force, in the system's units, per unit of λ − λ_c
 
     @property
     def is_block(self) -> bool:
@@ -86,15 +86,15 @@ class KnownWall:
 
     @cache  # noqa: B019 - there are as many walls as names
     def rest(self, local: float = LOCAL) -> tuple[Run, State]:
-        """Its blocks at rest under their weight; the state is to be copied."""
+        """Run and state of its blocks at rest under their weight; copy the state before changing it."""
         run = Run(self.system, local=local)
         state = State.at_rest(self.system)
         assert settle(run, state, 0.0, Criteria(collapse=self.far)) == "stable"
         return run, state
 
 
-# Walls whose load is known: a block twice as long as high with λ = tan φ, one twice as high as long with λ = b/h, and
-# walls with rounded corners, whose one collapse load limit analysis certifies
+# Walls with a known collapse load: a block twice as long as high with λ = tan φ, one twice as high as long with
+# λ = b/h, and walls with rounded corners, whose unique collapse load is certified by limit analysis
 SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", "rounded W1", "rounded W2")
 
 

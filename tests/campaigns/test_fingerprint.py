@@ -1,4 +1,4 @@
-"""What the digest of an outcome knows of."""
+"""What the fingerprint of an outcome depends on."""
 
 import ast
 import inspect
@@ -23,13 +23,13 @@ from ..walls import panel
 
 WALL = panel(wall__length=0.48, wall__height=0.12)
 
-OWN = {"runningbond", "meshing", "fem_interface", "dem", "homog"}
-OTHERS = {"threadpoolctl", "filelock", "ezdxf", "meshio"}
-"""Of threads and locks, and of files: what is read from a drawing is in the digest as a scene."""
+SUITE_PACKAGES = {"runningbond", "meshing", "fem_interface", "dem", "homog"}
+EXCLUDED = {"threadpoolctl", "filelock", "ezdxf", "meshio"}
+"""Libraries for threads, locks and files; what is read from a drawing is in the fingerprint as part of the scene."""
 
 
-def test_no_library_that_computes_is_left_out() -> None:
-    """A library of another version may give other numbers: each that a room which computes imports is in the digest."""
+def test_versions_of_all_computing_libraries_are_included() -> None:
+    """Another library version may give other numbers, so every library imported by a computing package counts."""
     imported = set()
     for room in COMPUTING_ROOMS:
         for source in Path(str(import_module(room).__file__)).parent.rglob("*.py"):
@@ -38,19 +38,19 @@ def test_no_library_that_computes_is_left_out() -> None:
                     imported |= {alias.name.partition(".")[0] for alias in node.names}
                 elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
                     imported.add(node.module.partition(".")[0])
-    foreign = imported - OWN - set(sys.stdlib_module_names)
+    foreign = imported - SUITE_PACKAGES - set(sys.stdlib_module_names)
     assert {"numpy", "clarabel", "highspy"} <= foreign
     distributions = packages_distributions()
-    assert {name for module in foreign for name in distributions[module]} - OTHERS <= set(LIBRARIES)
+    assert {name for module in foreign for name in distributions[module]} - EXCLUDED <= set(LIBRARIES)
 
 
 def closed_over(factor: float) -> Any:
-    """A solver of a user's that knows of a number by being closed over it."""
+    """A user's solver with a number in its closure."""
     return lambda scene, tolerance: Outcome(scene.title, "mine", "collapse", factor)
 
 
 def with_default(factor: float) -> Any:
-    """One that has it by default."""
+    """A solver with the number as a default argument."""
 
     def solve(scene: Scene, tolerance: float, by: float = factor) -> Outcome:
         return Outcome(scene.title, "mine", "collapse", by)
@@ -59,33 +59,33 @@ def with_default(factor: float) -> Any:
 
 
 class Solver:
-    """One that is an object, and has it in a field."""
+    """A solver object with the number in a field."""
 
     def __init__(self, factor: float) -> None:
         self.factor = factor
 
     def solve(self, scene: Scene, tolerance: float) -> Outcome:
-        """As of a bound method."""
+        """Solve; also passed as a bound method."""
         return Outcome(scene.title, "mine", "collapse", self.factor)
 
     __call__ = solve
 
 
 def named(factor: float) -> Any:
-    """One without a file, as of a notebook, that names a number outside of itself."""
+    """A solver without a source file, as in a notebook, that uses a global number."""
     names: dict[str, Any] = {"FACTOR": factor, "__name__": "__main__"}
     exec("def solve(scene, tolerance): return FACTOR", names)
     return names["solve"]
 
 
 def through_another(factor: float) -> Any:
-    """One that calls another."""
+    """A solver that calls another one."""
     inner = closed_over(factor)
     return lambda scene, tolerance: inner(scene, tolerance)
 
 
 def compiled(factor: float) -> Any:
-    """One that calls a compiled function, which is closed over the number."""
+    """A solver that calls a compiled function with the number in its closure."""
 
     def written() -> float:
         return factor
@@ -95,7 +95,7 @@ def compiled(factor: float) -> Any:
 
 
 def compiled_and_named(factor: float) -> Any:
-    """One without a file that calls a compiled function, which names the number."""
+    """A solver without a source file that calls a compiled function, which uses a global number."""
     names: dict[str, Any] = {"FACTOR": factor, "__name__": "__main__", "njit": numba.njit}
     exec("@njit\ndef inner(): return FACTOR\ndef solve(scene, tolerance): return inner()", names)
     return names["solve"]
@@ -105,8 +105,8 @@ MAKERS = [closed_over, with_default, lambda x: Solver(x).solve, Solver, named, p
 
 
 @pytest.mark.parametrize("made", [*MAKERS, compiled, compiled_and_named])
-def test_a_users_model_is_known_by_what_it_was_given(made: Any) -> None:
-    """Wherever it is asked for: a process that it was sent to has its code without a file."""
+def test_fingerprint_of_a_user_model_includes_its_parameters(made: Any) -> None:
+    """In every process: after pickling, the code has no source file."""
     made = (lambda x: partial(Solver.solve, Solver(x))) if made is partial else made
     keys = [
         fingerprint(WALL, Model("mine", "a user's own", made(factor), frozenset()), 1e-3) for factor in (1.0, 1.0, 2.0)
@@ -125,15 +125,15 @@ def test_a_users_model_is_known_by_what_it_was_given(made: Any) -> None:
     ],
 )
 @pytest.mark.parametrize("has_file", [True, False])
-def test_a_users_model_is_known_by_the_files_that_it_imports(
+def test_fingerprint_of_a_user_model_includes_imported_files(
     source: str, has_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A sweep took what an older version of the helper had given, of a model in a module as of one in a script."""
+    """Otherwise a sweep reuses outcomes of an older version of the helper, for models in modules and in scripts."""
     (tmp_path / "between.py").write_text("import helper\n")
     (tmp_path / "mine.py").write_text(source)
     monkeypatch.syspath_prepend(tmp_path)
     keys = []
-    for factor in (1.0, 1.0, 20.0):  # Python takes a file of the same second and the same size for the one it compiled
+    for factor in (1.0, 1.0, 20.0):  # Python reuses compiled code of a file with the same second and size
         (tmp_path / "helper.py").write_text(f"FACTOR = {factor}\n")
         for name in ("mine", "between", "helper"):
             sys.modules.pop(name, None)
@@ -163,10 +163,10 @@ LAW = replace(COULOMB, name="worn", constants=constants)
 
 @pytest.mark.parametrize("call", ["worn", "helper.worn"])
 @pytest.mark.parametrize("has_file", [True, False])
-def test_a_users_law_is_known_by_what_its_functions_call(
+def test_fingerprint_of_a_user_law_includes_called_functions(
     call: str, has_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A sweep took what the law had given before a function was changed that another one of the law calls."""
+    """Otherwise a sweep reuses outcomes from before a change of a function that the law calls indirectly."""
     monkeypatch.syspath_prepend(tmp_path)
     keys = []
     for factor in (0.5, 0.5, 0.25):  # another size, as above
@@ -184,8 +184,8 @@ def test_a_users_law_is_known_by_what_its_functions_call(
     assert keys[0] == keys[1] != keys[2]
 
 
-def test_code_without_a_file_is_known_by_the_names_in_it() -> None:
-    """The same instructions and constants, of another function."""
+def test_fingerprint_of_code_without_a_file_includes_its_names() -> None:
+    """Equal instructions and constants, but another function (min, max)."""
     keys = set()
     for name in ("min", "max"):
         names: dict[str, Any] = {"__name__": "__main__"}
@@ -195,10 +195,8 @@ def test_code_without_a_file_is_known_by_the_names_in_it() -> None:
 
 
 @pytest.mark.parametrize("name", ["rocking", "rigid"])
-def test_a_model_of_the_package_that_is_in_no_room_which_computes_is_known_by_its_file(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The laboratory kept what another formula had given."""
+def test_fingerprint_includes_the_source_file_of_laboratory_models(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It lies outside the computing packages; otherwise outcomes of an older formula are reused."""
     model, read = LADDER[name].model, Path.read_bytes
     before = fingerprint(WALL, model, 1e-3)
     file = inspect.getfile(model.solve.func)  # type: ignore[attr-defined]

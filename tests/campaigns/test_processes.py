@@ -1,4 +1,4 @@
-"""Tasks side by side on one machine."""
+"""Parallel tasks on one machine."""
 
 import os
 import signal
@@ -16,10 +16,10 @@ from runningbond.campaigns import processes
     ("jobs", "tasks", "cores", "started"),
     [(-1, 1, 16, 2), (-1, 5, 16, 5), (-1, 40, 16, 16), (8, 5, 16, 5), (3, 5, 16, 3), (8, 40, 1, 2), (-1, 5, 1, 1)],
 )
-def test_no_more_processes_are_started_than_there_are_cores_and_tasks(
+def test_number_of_processes_is_limited_by_cores_and_tasks(
     jobs: int, tasks: int, cores: int, started: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Two at least where there are to be processes at all: joblib computes in this one for one."""
+    """At least two if there are worker processes at all, because joblib computes one job in this process."""
     monkeypatch.setattr(processes, "cpu_count", lambda: cores)
     with processes._processes(jobs, tasks):
         assert effective_n_jobs(None) == started
@@ -37,8 +37,8 @@ PARENT = "import subprocess, sys; subprocess.run([sys.executable, '-c', sys.argv
 
 @pytest.mark.skipif(os.name == "nt", reason="a process of Windows keeps the number of its parent")
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
-def test_a_process_ends_with_its_parent_however_that_is_ended(how: signal.Signals) -> None:
-    """A script with a sweep that was ended left two processes, which went on computing."""
+def test_worker_ends_with_its_parent(how: signal.Signals) -> None:
+    """Workers of a script that was killed during a sweep once continued to compute."""
     with subprocess.Popen([sys.executable, "-c", PARENT, WORKER], stdout=subprocess.PIPE, text=True) as parent:
         assert parent.stdout is not None
         worker = psutil.Process(int(parent.stdout.readline()))

@@ -1,4 +1,4 @@
-"""The walls of examples/walls: what their page says they print, printed again."""
+"""The walls of examples/walls print what their page shows."""
 
 import json
 import re
@@ -21,7 +21,7 @@ QUICK = [run for run in RUNS if run not in SLOW]
     [*QUICK, *at_length(*SLOW)],
     ids=[run[0] for run in (*QUICK, *SLOW)],
 )
-def test_a_wall_prints_what_its_page_says(
+def test_example_walls_print_what_their_page_shows(
     line: str,
     model: str,
     head: str,
@@ -30,7 +30,7 @@ def test_a_wall_prints_what_its_page_says(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Limit analysis to its digits and words; what follows a path to its bracket, for friction remembers."""
+    """Limit analysis to 1e-5, `limit` with its message; other models to 1 %, because friction depends on the path."""
     monkeypatch.chdir(FOLDER.parents[1])
     assert command([*line.split(), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -44,7 +44,7 @@ def test_a_wall_prints_what_its_page_says(
     assert [printed[key] for key in ("multiplier", "lower", "upper")] == pytest.approx(written, rel=slack)
 
 
-def test_every_wall_has_its_picture_and_its_runs() -> None:
+def test_every_example_wall_has_a_picture_and_two_runs() -> None:
     walls = {path.stem for path in FOLDER.glob("*.toml")}
     assert len(walls) == 6
     for wall in walls:
@@ -53,8 +53,8 @@ def test_every_wall_has_its_picture_and_its_runs() -> None:
         assert sum(wall in run[0] for run in RUNS) >= 2
 
 
-def test_a_wall_is_pushed_both_ways() -> None:
-    """The beams and half a roof stand nearer to the left end: pushed to the left the wall falls at another load."""
+def test_collapse_load_differs_when_pushed_to_the_left() -> None:
+    """Beams and half a roof rest nearer to the left end, so the collapse load to the left is another one."""
     import runningbond as rb
 
     right = rb.read(FOLDER / "floor_beams.toml")

@@ -1,4 +1,4 @@
-"""What a command that keeps what it has says when it is stopped, and its exit code."""
+"""Messages and exit codes of interrupted commands that store what they have found."""
 
 import errno
 import json
@@ -10,7 +10,7 @@ import pytest
 
 from runningbond.campaigns import Campaign, Interrupted
 from runningbond.commands.command_line import command
-from runningbond.commands.terminal import BAD_INPUT, NO_ANSWER, STOPPED, interruptions, told_interruption
+from runningbond.commands.terminal import BAD_INPUT, NO_ANSWER, STOPPED, interruptions, report_interrupt
 from runningbond.models import MODELS, Model
 
 KEPT = "0 of 5 cases are kept in out; the same command goes on.\n"
@@ -24,19 +24,19 @@ KEPT = "0 of 5 cases are kept in out; the same command goes on.\n"
         (RuntimeError(), "the cluster failed", NO_ANSWER, f"runningbond: the cluster failed: {KEPT}"),
     ],
 )
-def test_who_is_stopped_is_told_why_and_what_is_kept(
+def test_interrupted_campaign_reports_cause_and_stored_results(
     cause: Exception | None, reason: str, code: int, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stopped = Interrupted(Campaign(), reason)
     stopped.__cause__ = cause
-    assert told_interruption(stopped, 5, "cases", Path("out")) == code
+    assert report_interrupt(stopped, 5, "cases", Path("out")) == code
     assert capsys.readouterr() == ("", said)
 
 
-def test_a_climb_that_is_stopped_says_how_far_it_came(
+def test_interrupted_advice_reports_the_rungs_so_far(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It ended without a word, and in JSON without an object."""
+    """Earlier, the command printed nothing, and with ``--json`` no object."""
 
     def at_limit(model: Model) -> list[int]:
         return [2] if model.name == "limit" else []
@@ -58,18 +58,18 @@ def test_a_climb_that_is_stopped_says_how_far_it_came(
         (Path("out"), True, "0 of 5 cases are kept in out; the same command without --fresh goes on."),
     ],
 )
-def test_what_goes_on_is_the_command_that_makes_nothing_anew(
+def test_resume_hint_without_out_and_with_fresh(
     folder: Path | None, fresh: bool, kept: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    told_interruption(Interrupted(Campaign(), ""), 5, "cases", folder, fresh=fresh)
+    report_interrupt(Interrupted(Campaign(), ""), 5, "cases", folder, fresh=fresh)
     assert capsys.readouterr().err == f"Interrupted: {kept}\n"
 
 
 @pytest.mark.parametrize("is_terminal", [True, False])
-def test_who_waits_for_a_model_to_end_is_told_so(
+def test_first_interrupt_prints_a_hint_on_a_terminal(
     is_terminal: bool, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """On 100 000 blocks it took minutes of silence, in which a second Ctrl-C loses all."""
+    """With 100 000 blocks minutes passed without output, in which a second Ctrl-C loses all results."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal)
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

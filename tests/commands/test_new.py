@@ -1,4 +1,4 @@
-"""A newcomer's first minute: a scene to start from, names that are nearly right, and the file that is not."""
+"""First use of the commands: a scene to start from, misspelled scene names and faulty files."""
 
 import shlex
 import tomllib
@@ -12,9 +12,7 @@ from runningbond.scene import read_scene
 from runningbond.scene.plausibility import warnings
 
 
-def test_a_new_scene_runs_and_nothing_in_it_looks_like_a_slip(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_new_scene_runs_without_warnings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "mine.toml"
     assert command(["new", str(path)]) == 0
     said = capsys.readouterr().out
@@ -26,15 +24,15 @@ def test_a_new_scene_runs_and_nothing_in_it_looks_like_a_slip(
     assert limit(scene).status == "collapse"
 
 
-def test_what_to_do_next_can_be_pasted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_suggested_commands_quote_the_path(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "my wall.toml"
     assert command(["new", str(path)]) == 0
     for line in capsys.readouterr().out.splitlines()[2:]:
         assert str(path) in shlex.split(line)
 
 
-def test_every_line_of_a_new_scene_is_said_what_it_is(tmp_path: Path) -> None:
-    """What is commented out is TOML as well, and the scene stays one with each such line in its place."""
+def test_commented_out_keys_of_a_new_scene_are_toml(tmp_path: Path) -> None:
+    """Each of the keys that are commented out, at least six, is valid TOML."""
     path = tmp_path / "mine.toml"
     command(["new", str(path)])
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -59,7 +57,7 @@ def test_nothing_is_overwritten(tmp_path: Path, name: str, capsys: pytest.Captur
     [("pannel-01", "panel-01"), ("panel_07", "panel-07"), ("wal-w4", "wall-w4"), ("pointload-2", "point-load-2")],
 )
 @pytest.mark.parametrize("verb", [["run", "--model", "limit"], ["show"], ["compare", "--models", "limit"]])
-def test_a_scene_nearly_named_is_asked_for(
+def test_misspelled_scene_name_gets_a_suggestion(
     given: str, meant: str, verb: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert command([verb[0], given, *verb[1:]]) == 2
@@ -67,7 +65,7 @@ def test_a_scene_nearly_named_is_asked_for(
 
 
 @pytest.mark.parametrize("name", ["xyz", "42", "no/such/file.toml"])
-def test_a_scene_like_none_is_not_guessed_at(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unknown_scene_name_gets_no_suggestion(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["show", name]) == 2
     assert "did you mean" not in capsys.readouterr().err
 
@@ -84,7 +82,7 @@ def test_compare_names_the_faulty_file(tmp_path: Path, content: str, capsys: pyt
     assert not (tmp_path / "out").exists()
 
 
-def test_the_version_is_that_of_the_distribution(capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_has_three_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["--version"]) == 0
     assert capsys.readouterr().out.strip().count(".") == 2
 

@@ -1,4 +1,4 @@
-"""What the README says can be done, done as it says."""
+"""Commands and Python code of the README run as they are printed there."""
 
 import re
 from pathlib import Path
@@ -39,6 +39,6 @@ def test_python_lines_run(wall: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert capsys.readouterr().out.startswith("collapse")
 
 
-def test_every_model_has_its_row() -> None:
+def test_every_model_has_a_row_in_the_table() -> None:
     for model in MODELS:
         assert f"| `{model}` |" in README

@@ -1,4 +1,4 @@
-"""``runningbond run``: its curve, what it writes, and what it says while it goes on."""
+"""``runningbond run``: its curve, its files and its progress output."""
 
 import csv
 import json
@@ -48,10 +48,10 @@ def read_csv(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_run_writes_its_curve_and_says_what_it_wrote(
+def test_run_writes_the_curve_and_lists_its_files(
     small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What is written is the stored outcome's; all of the push arrives at the base."""
+    """The curve is that of the stored outcome, and the base carries the whole push."""
     out = tmp_path / "out"
     assert command(["run", small, "--model", "dem-static", "--out", str(out)]) == 0
     written = [line for line in capsys.readouterr().out.splitlines() if line.startswith(str(out))]
@@ -67,8 +67,8 @@ def test_run_writes_its_curve_and_says_what_it_wrote(
     assert [float(row["ground vertical [N]"]) for row in rows] == pytest.approx(np.full(len(rows), weight))
 
 
-def test_no_library_writes_into_what_is_printed(tmp_path: Path) -> None:
-    """HiGHS 1.16 announces itself once a process, past Python, on the standard output that is all of ``--json``."""
+def test_libraries_print_nothing_into_json_output(tmp_path: Path) -> None:
+    """HiGHS 1.16 prints a banner once per process, bypassing Python, on the standard output that ``--json`` uses."""
     wall = str(write_toml(content(**SMALL, block__young=1e10), tmp_path / "wall.toml"))
     lines = f"for model in {list(MODELS)}: command(['run', {wall!r}, '--model', model, '--json'])"
     script = f"from runningbond.commands.command_line import command\n{lines}"
@@ -77,10 +77,10 @@ def test_no_library_writes_into_what_is_printed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("model", "rows"), [("limit", 1), ("limit-nonassociated", 1), ("homog", None)])
-def test_models_without_a_path_write_the_collapse_if_anything(
+def test_models_without_a_path_write_one_row_or_none(
     model: str, rows: int | None, small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """And leave nothing of an earlier run's behind."""
+    """Curves of an earlier run are removed."""
     for name in ("curve.csv", "curve.png"):
         (tmp_path / name).write_bytes(b"old")
     assert command(["run", small, "--model", model, "--out", str(tmp_path), "--json"]) == 0
@@ -95,7 +95,7 @@ def test_models_without_a_path_write_the_collapse_if_anything(
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 def test_the_curve_is_drawn_with_its_bracket_and_units(model: str) -> None:
-    """Every state is in the picture, the bracket within its axis; a fall is drawn as one."""
+    """Every state is drawn, and those of a fall are marked; the bracket lies within the load axis."""
     scene = published_scene("wall-w1")
     outcome = run_model(model, scene, 0.02)
     axes = curve_figure(scene, outcome).axes[0]
@@ -112,8 +112,8 @@ def test_the_curve_is_drawn_with_its_bracket_and_units(model: str) -> None:
     assert axes.get_xscale() == "symlog"  # a plateau a thousand times as long as the elastic range
 
 
-def test_progress_of_soft_blocks_says_when_rigid_ones_are_asked() -> None:
-    """Two observers, of which the one that writes states looks at deformable blocks alone."""
+def test_progress_names_the_comparison_runs_of_soft_blocks() -> None:
+    """Of two observers, the one that writes states is called for the run with deformable blocks only."""
     progress, looks = MotionProgress(), list[str]()
     scene = panel(**SMALL).with_block(young=1e9, poisson=0.2)
     assert asks_others(scene, {})
@@ -128,8 +128,8 @@ def test_progress_of_soft_blocks_says_when_rigid_ones_are_asked() -> None:
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-def test_progress_tells_the_bracket_so_far(model: str) -> None:
-    """In the end it encloses the outcome's: it knows neither a peak under displacements nor what the last load did."""
+def test_progress_shows_the_bracket_so_far(model: str) -> None:
+    """In the end it contains the outcome's: peaks under displacement control and the last load are not in it."""
     make = MODELS[model].progress
     assert make is not None
     progress = make()
@@ -143,8 +143,8 @@ def test_progress_tells_the_bracket_so_far(model: str) -> None:
     assert "% of " in progress.line()
 
 
-def test_progress_tells_how_far_each_motion_of_the_ground_has_come() -> None:
-    """Motion by motion, of another scale or of the same."""
+def test_progress_shows_the_time_of_each_ground_motion() -> None:
+    """Motions are counted, also if the scale stays the same."""
     pulse = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 0.1}, "quantity": "acceleration"}
     rest = resting(panel(**SMALL, load__live=None, load__history=pulse))
     progress = ResponseProgress()
@@ -163,10 +163,8 @@ def test_progress_changes_no_number() -> None:
 
 
 @pytest.mark.parametrize("is_terminal", [True, False])
-def test_progress_is_for_terminals_and_leaves_nothing_behind(
-    is_terminal: bool, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The line is cut to the terminal's width and wiped in the end; in a pipe there is none."""
+def test_progress_line_is_for_terminals_and_is_wiped(is_terminal: bool, capsys: pytest.CaptureFixture[str]) -> None:
+    """The line is cut to the terminal's width and wiped at the end; without a terminal nothing is printed."""
     with (
         patch.object(terminal, "PATIENCE", 0.0),
         patch.object(sys.stderr, "isatty", lambda: is_terminal),
@@ -191,8 +189,8 @@ def test_progress_is_for_terminals_and_leaves_nothing_behind(
         assert max(map(len, err.split("\r\x1b[K"))) == 19
 
 
-def test_progress_of_many_cases_is_told_in_a_file_now_and_then(capsys: pytest.CaptureFixture[str]) -> None:
-    """A line at once, one where the interval is over, and the last one; no control characters."""
+def test_progress_of_many_cases_is_printed_at_intervals(capsys: pytest.CaptureFixture[str]) -> None:
+    """Without a terminal: a line at the start, one per interval and one at the end; no control characters."""
     clock = iter((0.0, 1.0, 31.0, 32.0, 40.0))
     with (
         patch.object(sys.stderr, "isatty", lambda: False),
@@ -206,8 +204,8 @@ def test_progress_of_many_cases_is_told_in_a_file_now_and_then(capsys: pytest.Ca
     assert err.splitlines() == ["comparing, 0 of 4, 0 s", "b, 2 of 4, 31 s", "d, 4 of 4, 40 s"]
 
 
-def test_json_is_pure_on_a_terminal_too(small: str) -> None:
-    """With standard error on a terminal and standard output in a pipe, the latter is one object."""
+def test_json_output_is_pure_with_stderr_on_a_terminal(small: str) -> None:
+    """With standard error on a terminal, standard output, a pipe, holds one object and nothing else."""
     master, slave = pty.openpty()
     line = [sys.executable, "-m", "runningbond", "run", small, "--model", "limit", "--json"]
     done = subprocess.run(line, stdout=subprocess.PIPE, stderr=slave, check=True)
@@ -217,10 +215,10 @@ def test_json_is_pure_on_a_terminal_too(small: str) -> None:
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_an_interruption_of_limit_leaves_the_proved_bracket_under_no_fingerprint(
+def test_interrupted_limit_stores_its_bracket_without_fingerprint(
     how: signal.Signals, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Exit code 130, one JSON object, and no comparison takes it for the answer."""
+    """Exit code 130 and one JSON object; without a fingerprint no comparison reuses the outcome."""
     scene, out = str(write_toml(content(**SIZE), tmp_path / "wall.toml")), tmp_path / "out"
     interrupt_at(8, monkeypatch, how=how)
     before = {number: signal.getsignal(number) for number in INTERRUPTIONS}
@@ -236,10 +234,10 @@ def test_an_interruption_of_limit_leaves_the_proved_bracket_under_no_fingerprint
     assert load_outcome(out)[1] == ""
 
 
-def test_a_folder_that_another_run_writes_is_refused(
+def test_folder_in_use_by_another_process_is_refused(
     small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Until that ends; who runs twice in one process has the folder already."""
+    """The folder is free again when that process ends; one process may use it several times."""
     out = tmp_path / "out"
     holds = "import sys; from pathlib import Path; from runningbond.scene.folder_lock import claim\n"
     holds += "claim(Path(sys.argv[1]), '--out'); print('held', flush=True); sys.stdin.read()"
@@ -258,30 +256,30 @@ def test_a_folder_that_another_run_writes_is_refused(
         assert command(["run", small, "--model", "limit", "--out", str(out)]) == 0
 
 
-def test_what_a_long_run_costs_is_told_on_a_terminal_only(
+def test_cost_of_a_long_run_is_printed_on_a_terminal_only(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = published_scene("panel-04")
-    monkeypatch.setattr(terminal, "LONG", 0.0)
-    terminal.tell_cost(MODELS["limit"], scene, 0.01)
+    monkeypatch.setattr(terminal, "LONG_RUN", 0.0)
+    terminal.print_cost(MODELS["limit"], scene, 0.01)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    terminal.tell_cost(MODELS["limit"], scene, 0.01)
-    monkeypatch.setattr(terminal, "LONG", 1e9)
-    terminal.tell_cost(MODELS["limit"], scene, 0.01)
+    terminal.print_cost(MODELS["limit"], scene, 0.01)
+    monkeypatch.setattr(terminal, "LONG_RUN", 1e9)
+    terminal.print_cost(MODELS["limit"], scene, 0.01)
     said = capsys.readouterr()
     assert said.out == ""
     assert re.fullmatch(r"limit: about \S+ s \(×÷ \S+\); Ctrl-C leaves what is proved by then\n", said.err)
 
 
-def test_one_scene_too_many_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+def test_extra_scene_argument_is_refused_by_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["run", "panel-01", "panel-02", "--model", "limit"]) == 2
-    assert capsys.readouterr().err == "runningbond: panel-02: is more than this command takes\n"
+    assert capsys.readouterr().err == "runningbond: panel-02: is not an argument of this command\n"
 
 
-def test_a_support_is_followed_through_finite_displacements_where_they_are_asked_for(
+def test_settlement_at_finite_displacements_from_the_command_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """As by Python's `displacements`; models and walls that know of none are refused, and nothing is written."""
+    """As with `displacements` in Python; options that do not apply to a model or wall are refused."""
     live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -0.01]}
     wall = str(write_toml(content(**SMALL, load__live=live), tmp_path / "sinks.toml"))
     out, far = tmp_path / "out", ["--displacements", "finite"]
@@ -303,8 +301,8 @@ def test_a_support_is_followed_through_finite_displacements_where_they_are_asked
         assert not (tmp_path / "none").exists()
 
 
-def test_a_wall_is_pushed_as_far_as_the_command_line_asks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """As by Python's `distance`, and its curve is kept."""
+def test_distance_option_sets_how_far_a_wall_is_pushed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As with `distance` in Python; the curve is stored."""
     wall, out = str(write_toml(content(**SMALL), tmp_path / "pushed.toml")), tmp_path / "out"
     far = ["--displacements", "finite", "--distance", "0.002"]
     assert command(["run", wall, "--model", "dem-dynamic", *far, "--out", str(out)]) == 0
@@ -316,11 +314,11 @@ def test_a_wall_is_pushed_as_far_as_the_command_line_asks(tmp_path: Path, capsys
     assert "--distance = -1.0: must be a number above 0" in capsys.readouterr().err
 
 
-def test_a_wall_on_moving_ground_is_not_asked_how_far_it_goes(
+def test_finite_displacements_are_refused_with_ground_motion(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It goes as far as it does, so that neither option would be read."""
+    """The ground motion determines how far the wall moves, so the option would have no effect."""
     pulse = {"pulse": {"kind": "sine", "amplitude": 0.4, "period": 0.6}, "quantity": "g"}
     shaken = str(write_toml(content(**SMALL, load__live=None, load__history=pulse), tmp_path / "shaken.toml"))
     assert command(["run", shaken, "--model", "dem-dynamic", "--displacements", "finite"]) == 2
-    assert "--displacements = 'finite': is not taken where the ground moves" in capsys.readouterr().err
+    assert "--displacements = 'finite': is not supported where the ground moves" in capsys.readouterr().err

@@ -16,23 +16,23 @@ from ..pictures.scenes import SCENES, line, point, wall
 from ..walls import panel
 
 
-def test_show_tells_what_the_panel_weighs() -> None:
+def test_show_lists_blocks_mass_and_weight() -> None:
     """Panel 1 is 1.44 × 0.72 × 0.12 m of 1800 kg/m³, in twelve courses of six or five and two halves."""
     told = dict(rows(published_scene("panel-01")))
     mass = 1800 * 1.44 * 0.72 * 0.12
     assert told["blocks"] == f"{6 * 6 + 6 * 7}, of which 0 held"
     assert told["mass of the wall"] == f"{mass:.5g} kg"
-    assert told["weight of what moves"] == f"{9.81e-3 * mass:.4g} kN"
+    assert told["weight of movable blocks"] == f"{9.81e-3 * mass:.4g} kN"
     assert told["live load at λ = 1"].startswith(f"({9.81e-3 * mass:.4g}, 0) kN, −")
 
 
-def test_a_push_to_the_left_is_shown_as_one() -> None:
+def test_push_to_the_left_has_a_negative_resultant() -> None:
     told = dict(rows(panel(load__live={"kind": "lateral", "direction": "left"})))
     assert told["live load at λ = 1"].startswith("(−")
 
 
 def test_resultants_are_those_by_hand_about_the_lower_left_corner() -> None:
-    """A floor of 3 kN/m on 2 of 4 m, a force aside and a moment; the wall weighs 4 × 1.5 × 0.3 × 2000 × 9.81 N."""
+    """A floor of 3 kN/m on 2 of 4 m, a lateral force and a moment; the wall weighs 4 × 1.5 × 0.3 × 2000 × 9.81 N."""
     loads = [line(1.5, 1, 3, [0, -3e3]), point(0, 1.0, 2e3, 0), {"kind": "moment", "at": [3.2, 1.1], "moment": 500.0}]
     tables = wall(4.0, 1.5) | {"load": {"gravity": 9.81, "dead": loads, "live": [loads[1], {"kind": "lateral"}]}}
     told = dict(rows(scene_from_dict(tables)))
@@ -42,11 +42,11 @@ def test_resultants_are_those_by_hand_about_the_lower_left_corner() -> None:
     weight = 4 * 1.5 * 0.3 * 2000 * 9.81e-3
     assert told["load.live[1]"] == f"lateral: ({weight:.4g}, 0) kN, −{weight * 0.75:.4g} kN m about (0, 0)"
     assert told["live load at λ = 1"].startswith(f"({weight + 2:.4g}, 0) kN, −{weight * 0.75 + 2:.4g} kN m")
-    assert told["weight of what moves"] == f"{weight:.4g} kN"
+    assert told["weight of movable blocks"] == f"{weight:.4g} kN"
 
 
-def test_materials_are_counted_and_weighed_each_with_its_joints() -> None:
-    """Of two blocks of 1 × 0.5 × 0.3 m the upper is of oak, and the joint between them of mortar."""
+def test_show_counts_blocks_and_joints_by_material() -> None:
+    """Two blocks of 1 × 0.5 × 0.3 m, the upper one of oak, with a joint of mortar between them."""
     tables = wall(1.0, 1.0, (1.0, 0.5)) | {
         "materials": {"oak": {"density": 700.0}},
         "joints": {"mortar": {"friction": 0.75, "cohesion": 1e5}},
@@ -63,7 +63,7 @@ def test_materials_are_counted_and_weighed_each_with_its_joints() -> None:
     assert (told["assign[0]"], told["assign[1]"]) == ("1 block of oak", "1 joint of mortar")
 
 
-def test_it_says_what_became_of_every_assign() -> None:
+def test_show_reports_the_effect_of_every_assign_entry() -> None:
     """Later entries win: the second takes half of what the first chose, the fourth all that the third did."""
     tables = wall(2.0, 1.0) | {
         "materials": {"oak": {"density": 700.0}, "brick": {"density": 1700.0}},
@@ -85,15 +85,15 @@ def test_it_says_what_became_of_every_assign() -> None:
     assert "  of mortar" not in told
 
 
-def test_ties_name_the_blocks_that_hold_them() -> None:
+def test_show_names_the_blocks_at_the_ends_of_ties() -> None:
     told = dict(rows(scene_from_dict(SCENES["tied"]())))
     assert told["tie[0]"].startswith("from (0.1, 1.6) m, block 39, to (2.9, 1.6) m, block 44, E A / L = 22.5 MN/m")
     assert "to (4, 0.4) m, an anchor fixed in space," in told["tie[1]"]
     assert told["tie[1]"].endswith("yields at 70 kN")
 
 
-def test_the_beam_and_what_drives_it_are_told() -> None:
-    """Its loads have keys of their own, and leave those of the file their numbers."""
+def test_show_describes_the_beam_and_its_drive() -> None:
+    """Loads of the beam have their own keys and do not change the numbers of other loads."""
     told = dict(rows(scene_from_dict(SCENES["shear_wall"]())))
     assert told["beam"] == "0.25 m high, 500 kg, 4.905 kN, kept level, free to rise, on joints of mortar"
     assert told["beam.drive"].startswith(
@@ -106,7 +106,7 @@ def test_the_beam_and_what_drives_it_are_told() -> None:
     assert {"beam.drive", "load.live", "beam.force"} <= set(told)
 
 
-def test_supports_are_told() -> None:
+def test_show_describes_supports() -> None:
     assert dict(rows(scene_from_dict(SCENES["cracked"]())))["supports"] == "pin at (0, 0) m, roller at (1.5, 0) m"
     told = dict(rows(scene_from_dict(SCENES["turning_support"]())))
     assert told["supports"] == "ground in 2 pieces"
@@ -126,7 +126,7 @@ def test_blocks_that_may_crack_are_counted_whole() -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_every_scene_is_told_in_rows_of_their_own(name: str) -> None:
+def test_rows_of_a_scene_have_distinct_labels(name: str) -> None:
     told = rows(scene_from_dict(SCENES[name]()))
     assert len(dict(told)) == len(told)
     assert all(value for _, value in told)
@@ -137,7 +137,7 @@ def test_show_draws_the_wall(suffix: str, begins: bytes, tmp_path: Path, capsys:
     picture = tmp_path / f"wall{suffix}"
     assert command(["show", "wall-w3", "-o", str(picture)]) == 0
     assert picture.read_bytes().startswith(begins)
-    assert "weight of what moves" in capsys.readouterr().out
+    assert "weight of movable blocks" in capsys.readouterr().out
     plain = picture.read_bytes()
     assert command(["show", "wall-w3", "--numbers", "-o", str(picture)]) == 0
     assert picture.read_bytes() != plain
@@ -148,7 +148,7 @@ def test_show_draws_the_wall(suffix: str, begins: bytes, tmp_path: Path, capsys:
     [
         (["panel-01", "-o", "wall.pdf"], "--out = 'wall.pdf': must end in .svg or .png"),
         (["panel-01", "-o", "wall"], "--out = 'wall': must end in .svg or .png"),
-        (["panel-01", "--numbers"], "--numbers: needs a picture to stand in"),
+        (["panel-01", "--numbers"], "--numbers: needs a picture to write into"),
         (["panel-77"], "panel-77"),
     ],
 )
@@ -163,8 +163,8 @@ def test_show_refuses_in_one_line(
     assert not list(tmp_path.iterdir())
 
 
-def test_a_wall_on_a_map_is_shown_where_it_stands() -> None:
-    """Two blocks of 0.4 × 0.2 m; four digits left 5.123e+05 … 5.123e+05 of them."""
+def test_map_coordinates_are_shown_with_enough_digits() -> None:
+    """Two blocks of 0.4 × 0.2 m; with four digits their extent was printed as 5.123e+05 … 5.123e+05."""
     low = np.array([512_345.1, 5_412_345.2])
     blocks = [low + [[0, y], [0.4, y], [0.4, y + 0.2], [0, y + 0.2]] for y in (0.0, 0.2)]
     scene = build_scene(
@@ -181,8 +181,8 @@ def test_a_wall_on_a_map_is_shown_where_it_stands() -> None:
     assert "ground moment about (512345.3, 5412345.2) [N m]" in Supports(scene, wall_points(scene)).columns
 
 
-def test_what_a_cosine_leaves_of_zero_is_told_as_zero() -> None:
-    """The springing of a drawn arch is the sine of 180°, 1.2e-16; `show` had it as "y −1.225e−16 … 1 m"."""
+def test_rounding_errors_of_coordinates_are_shown_as_zero() -> None:
+    """The springing of a drawn arch is at sin 180° = 1.2e-16; `show` printed "y −1.225e−16 … 1 m"."""
     corners = np.array([[1.0, -np.sin(np.pi)], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]])
     scene = build_scene(
         "springing",

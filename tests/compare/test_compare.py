@@ -1,4 +1,4 @@
-"""Campaigns resume, tables say what was found, and the command line keeps its contract."""
+"""Campaigns resume, tables state the outcomes, and the command line keeps its output format and exit codes."""
 
 import csv
 import inspect
@@ -60,13 +60,13 @@ def test_json_is_one_object_with_the_keys_of_the_contract(
     assert printed.err == ""
 
 
-def test_an_undecided_run_leaves_with_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_undecided_run_exits_with_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("runningbond.limit.starts.PROGRAM_BUDGET", 0)
     monkeypatch.setattr("runningbond.limit.sequences.SHORT", 0)
     assert command(["run", "panel-04", "--model", "limit-nonassociated"]) == 3
 
 
-def test_a_kept_run_can_be_read_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_stored_run_can_be_read_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["run", "panel-04", "--model", "limit", "--out", str(tmp_path / "kept"), "--json"]) == 0
     outcome, _ = load_outcome(tmp_path / "kept")
     assert outcome.summary() == json.loads(capsys.readouterr().out)
@@ -80,7 +80,7 @@ def test_help_names_both_commands(capsys: pytest.CaptureFixture[str]) -> None:
     assert "compare" in printed
 
 
-def test_the_five_lines_of_the_readme() -> None:
+def test_read_scene_and_limit_from_python() -> None:
     from runningbond.limit import limit
     from runningbond.scene import read_scene
 
@@ -94,7 +94,7 @@ def test_unknown_models_are_refused_in_python_too() -> None:
         run_model("limt", panel())
 
 
-def test_a_tolerance_is_refused_by_the_name_that_it_has_in_python() -> None:
+def test_refused_tolerance_has_its_name_in_python() -> None:
     for run in (run_model, lambda *arguments: run_campaign({}, folder=Path(), tolerance=arguments[2])):
         with pytest.raises(SceneError, match=r"^tolerance = 2: must be"):
             run("limit", panel(), 2)
@@ -104,7 +104,7 @@ def test_a_tolerance_is_refused_by_the_name_that_it_has_in_python() -> None:
 
 
 def rigid_block(scene: Scene, tolerance: float) -> Outcome:
-    """A model of one's own: a single block slides at tan φ or turns over at b / h."""
+    """Custom model: a single block slides at tan φ or topples at b / h."""
     width, height = np.ptp(scene.blocks.vertices[scene.blocks.owner == 0], axis=0)
     multiplier = min(scene.joint.friction, float(width / height))
     return Outcome(scene.title, "toppling", "collapse", multiplier, message="closed form")
@@ -115,17 +115,17 @@ TOPPLING = Model("toppling", "one rigid block in closed form", rigid_block, READ
 
 
 @pytest.mark.parametrize(("friction", "exact"), [(0.3, 0.3), (3.0, 0.5)])
-def test_a_model_of_ones_own_is_run_as_it_is(friction: float, exact: float) -> None:
+def test_custom_model_runs_without_registration(friction: float, exact: float) -> None:
     scene = courses([[1]], width=0.2, height=0.4, joint__friction=friction)
     outcome = run_model(TOPPLING, scene)
     assert outcome.multiplier == pytest.approx(exact, rel=1e-12)
     assert outcome.multiplier == pytest.approx(run_model("limit", scene).multiplier, rel=1e-6)
 
 
-def test_a_model_of_ones_own_stands_in_a_comparison(
+def test_registered_custom_model_is_in_the_comparison(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Put into `MODELS`, it is in the tables beside the others, also of processes that have never heard of it."""
+    """A model added to `MODELS` is in the tables, also if worker processes run it that do not have it in theirs."""
     monkeypatch.setitem(MODELS, "toppling", TOPPLING)
     tall = content(wall__length=None, wall__height=None, wall__courses=[[1]], wall__block_width=0.2)
     tall["wall"]["block_height"] = 0.4
@@ -138,7 +138,7 @@ def test_a_model_of_ones_own_stands_in_a_comparison(
     assert "2 of them already in" in capsys.readouterr().out
 
 
-def test_changed_code_of_a_model_of_ones_own_is_another_key() -> None:
+def test_fingerprint_depends_on_the_code_of_a_custom_model() -> None:
     namespace: dict[str, Any] = {"__name__": "notebook"}
     exec("def solve(scene, tolerance):\n    return 1\ndef changed(scene, tolerance):\n    return 2", namespace)
     solvers = (rigid_block, namespace["solve"], namespace["changed"])
@@ -147,7 +147,7 @@ def test_changed_code_of_a_model_of_ones_own_is_another_key() -> None:
     assert fingerprint(panel(), MODELS["limit"], 0.01) == fingerprint(panel(), "limit", 0.01)
 
 
-def test_the_parameters_of_a_model_are_those_that_it_takes() -> None:
+def test_model_parameters_match_the_solver_signature() -> None:
     solvers: dict[str, Callable[..., Outcome]] = {"dem-static": dem_static, "dem-dynamic": dem_dynamic, "fem": fem}
     for name, model in MODELS.items():
         taken = inspect.signature(solvers.get(name, model.solve)).parameters.values()
@@ -157,7 +157,7 @@ def test_the_parameters_of_a_model_are_those_that_it_takes() -> None:
         run_model("limit", panel(), modes=3)
 
 
-def test_an_outcome_names_the_keys_that_its_model_does_not_know() -> None:
+def test_message_lists_keys_that_the_model_ignores() -> None:
     glued = {"cohesion": 1e4, "fracture_energy_1": 5.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     scene = panel(block__young=1e10, joint__friction=0.6, **{f"joint__{key}": value for key, value in glued.items()})
     stiffness, energy = ["joint.normal_stiffness", "joint.shear_stiffness"], ["joint.fracture_energy_1"]
@@ -173,8 +173,8 @@ def test_an_outcome_names_the_keys_that_its_model_does_not_know() -> None:
 STIFF = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9, "wall__length": 0.48, "wall__height": 0.12}
 
 
-def test_an_outcome_names_the_keys_of_a_beam_that_its_model_does_not_know() -> None:
-    """The line of its force counts where displacements are finite and lead it; its rate, where blocks move in time."""
+def test_message_lists_beam_keys_that_the_model_ignores() -> None:
+    """`force_line` matters only at finite displacements of a driven beam, `rate` only if blocks move in time."""
     led = {"displacement": [0.002, 0.0], "rate": 0.01}
     beam = {"height": 0.1, "force": [0.0, -1e3], "force_line": "fixed", "drive": led}
     scene = panel(load__live=None, beam=beam, **STIFF)
@@ -186,7 +186,7 @@ def test_an_outcome_names_the_keys_of_a_beam_that_its_model_does_not_know() -> N
     assert "taken into account" not in run_model("dem-dynamic", scene, displacements="finite").message
 
 
-def test_nor_does_the_line_of_a_force_on_a_beam_count_where_the_ground_moves() -> None:
+def test_beam_force_line_is_ignored_under_ground_motion() -> None:
     history = {"pulse": {"kind": "sine", "amplitude": 0.1, "period": 0.2}, "quantity": "g"}
     beam = {"height": 0.1, "force": [0.0, -1e3], "force_line": "fixed"}
     scene = panel(load__live=None, load__history=history, beam=beam, **STIFF)
@@ -194,8 +194,8 @@ def test_nor_does_the_line_of_a_force_on_a_beam_count_where_the_ground_moves() -
 
 
 @pytest.mark.parametrize("energy", ["fracture_energy_1", "compressive_fracture_energy"])
-def test_models_that_know_no_softening_say_that_the_wall_may_bear_less(energy: str) -> None:
-    """A block glued to its base, of which `limit` and `dem-static` promise what a brittle joint does not hold."""
+def test_models_without_softening_warn_of_a_lower_load(energy: str) -> None:
+    """A block glued to its base, for which `limit` and `dem-static` give loads that a brittle joint does not carry."""
     size = {"length": 0.24, "height": 0.24, "block_width": 0.24, "block_height": 0.24, "thickness": 0.12}
     joint = {"cohesion": 1e4, "tensile_strength": 5e3, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     if energy == "compressive_fracture_energy":
@@ -218,7 +218,7 @@ def test_models_that_know_no_softening_say_that_the_wall_may_bear_less(energy: s
 # --- campaigns -----------------------------------------------------------------------------------------------
 
 
-def test_a_campaign_reuses_what_is_there_and_only_that(tmp_path: Path) -> None:
+def test_campaign_reuses_stored_results(tmp_path: Path) -> None:
     scenes = {name: published_scene(name) for name in FAST}
     models = ["homog", "limit"]
     first = run_campaign(scenes, models, folder=tmp_path, jobs=1)
@@ -231,7 +231,7 @@ def test_a_campaign_reuses_what_is_there_and_only_that(tmp_path: Path) -> None:
     assert not run_campaign(scenes, models, folder=tmp_path, jobs=1, fresh=True).reused
 
 
-def test_another_scene_tolerance_or_model_is_another_key() -> None:
+def test_fingerprint_depends_on_scene_model_and_tolerance() -> None:
     keys = {
         fingerprint(scene, model, tolerance)
         for scene in (panel(), panel(joint__friction=0.61), panel(wall__height=0.78), panel(title="other"))
@@ -252,9 +252,7 @@ def test_a_damaged_result_is_computed_again(tmp_path: Path) -> None:
         assert again.outcomes["panel-04", "limit"].multiplier == whole.multiplier
 
 
-def test_a_model_that_breaks_on_one_scene_does_not_lose_the_others(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_exception_in_one_case_does_not_lose_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     limit = MODELS["limit"]
 
     def fragile(scene: Scene, tolerance: float) -> Outcome:
@@ -282,8 +280,8 @@ def start(out: Path, *arguments: str) -> "subprocess.Popen[str]":
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, *at_length(signal.SIGINT)])
-def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
-    """Stopped after its first result, by Ctrl-C or by force, in the middle of one that takes half a minute."""
+def test_interrupted_campaign_resumes(how: signal.Signals, tmp_path: Path) -> None:
+    """Stopped after its first result, by Ctrl-C or SIGKILL, during a case that takes half a minute."""
     models, walls = ["limit", "dem-static"], ["panel-04", "wall-w3"]
     process = start(tmp_path, "panel-11", *walls, "--models", ",".join(models))
     deadline = time.monotonic() + 60
@@ -308,8 +306,8 @@ def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_p
 
 
 @pytest.mark.parametrize("work", [2.0, *at_length(0.1)])
-def test_ctrl_c_with_tasks_waiting_says_one_thing(work: float, tmp_path: Path) -> None:
-    """More tasks than the workers' queue takes, while workers load and when each is at a task: the hint and no more."""
+def test_ctrl_c_with_waiting_tasks_prints_only_the_hint(work: float, tmp_path: Path) -> None:
+    """More tasks than the workers' queue holds; each worker has run for `work` s, in a task or while loading."""
     process = start(tmp_path, "--models", "fem", "--jobs", "2", "--fresh")
     deadline, workers = time.monotonic() + 60, psutil.Process(process.pid)
     while time.monotonic() < deadline:
@@ -325,13 +323,13 @@ def test_ctrl_c_with_tasks_waiting_says_one_thing(work: float, tmp_path: Path) -
     assert "KeyError" not in errors
 
 
-def test_a_run_stopped_by_ctrl_c_leaves_what_it_had_found(tmp_path: Path) -> None:
-    """Exit 130, one JSON object, and a readable result that no comparison takes for the answer."""
+def test_run_stopped_by_ctrl_c_stores_an_undecided_outcome(tmp_path: Path) -> None:
+    """Exit code 130, one JSON object, and a readable outcome without a fingerprint, which no comparison reuses."""
     folder = tmp_path / "panel-12" / "dem-dynamic"
     line = [SCRIPT, "run", "panel-12", "--model", "dem-dynamic", "--json", "--tolerance", "1e-6"]
     line += ["--out", str(folder)]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
-    # At rest under its dead load, and far from its end.
+    # Until the wall is at rest under its dead load; the run is then far from its end.
     while not (folder / "blocks.pvd").exists() and process.poll() is None:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)
@@ -371,10 +369,10 @@ def test_comparison_writes_every_case_with_printed_values(tmp_path: Path, capsys
 
 
 @pytest.mark.parametrize("write", [table.multiplier_sheets, table.csv_text])
-def test_the_corrected_value_of_a_panel_is_not_worked_out_for_each_other_one_or_model(
+def test_corrected_homo_is_computed_twice_per_panel(
     write: Callable[[table.Comparison], object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Once for the labels and once for the value: it is a run of `homog`."""
+    """Once for the labels and once for the value, not for each other panel or model: it is a run of `homog`."""
     panels = [case.name for case in PUBLISHED if case.name.startswith("panel")]
     scenes = {name: published_scene(name) for name in panels}
     published = {case.name: case for case in PUBLISHED if case.name in panels}
@@ -389,7 +387,7 @@ def test_the_corrected_value_of_a_panel_is_not_worked_out_for_each_other_one_or_
     assert set(worked_out.values()) == {2}
 
 
-def test_every_model_is_compared_where_none_is_named(tmp_path: Path) -> None:
+def test_compare_runs_all_models_by_default(tmp_path: Path) -> None:
     joint = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
     scene = content(wall__length=0.48, wall__height=0.24, joint=joint, block__young=1e12)
     path = write_toml(scene, tmp_path / "wall.toml")
@@ -398,18 +396,16 @@ def test_every_model_is_compared_where_none_is_named(tmp_path: Path) -> None:
         assert {row["model"]: row["status"] for row in csv.DictReader(file)} == dict.fromkeys(MODELS, "collapse")
 
 
-def test_walls_with_openings_are_known_by_name_and_stand_in_their_table(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Ferris & Tin-Loi's W4 to W6 have 55, 61 and 146 blocks; a comparison runs them where they are asked for."""
+def test_walls_with_openings_are_compared_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Ferris & Tin-Loi's W4 to W6 have 55, 61 and 146 blocks; a comparison runs them if they are named."""
     walls = {case.name: published_scene(case.name).wall.sum() for case in FURTHER}
     assert walls == {"wall-w4": 55, "wall-w5": 61, "wall-w6": 146}
     assert command(["compare", *walls, "--models", "limit", "--out", str(tmp_path), "--jobs", "1"]) == 0
     assert "Ferris & Tin-Loi (2001)" in (tmp_path / "table.md").read_text()
 
 
-def test_pictures_of_an_earlier_comparison_do_not_stay(tmp_path: Path) -> None:
-    """Nor does anything else go; a comparison of other walls has other plates."""
+def test_pictures_of_an_earlier_comparison_are_removed(tmp_path: Path) -> None:
+    """Other files stay; a comparison of other walls has other plates."""
     line = ["compare", "--models", "dem-static", "--tolerance", "0.05", "--out", str(tmp_path), "--jobs", "1"]
     own = tmp_path / "mine.png"
     own.touch()
@@ -428,7 +424,7 @@ def test_published_walls_are_the_sixteen_panels_and_three_walls() -> None:
 
 @pytest.mark.parametrize(
     ("row", "blocks"),
-    # Baraldi, Reccia & Cecchi, Table 1: blocks along and courses up, half blocks counted by every second course.
+    # Baraldi, Reccia & Cecchi, Table 1: blocks along and courses up; two half blocks in every second course.
     [
         (1, (6, 12)),
         (2, (12, 12)),
@@ -454,14 +450,14 @@ def test_figure_6_holds_the_homogenised_multiplier_of_every_panel() -> None:
     assert len(TEXTURES) == multiplier.shape[1] == 4
 
 
-def test_corrected_column_is_not_the_stated_friction() -> None:
+def test_corrected_homo_uses_another_friction_than_stated() -> None:
     scene = published_scene("panel-05")
     assert corrected_homo(scene) == pytest.approx(0.5336, abs=5e-5)
     assert run_model("homog", scene).multiplier == pytest.approx(0.5420, abs=5e-5)
 
 
-def test_your_own_wall_is_yours_whatever_its_file_is_called(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A changed copy of a published scene, under its name, with a title that looks like markup."""
+def test_own_scene_may_have_a_published_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A changed copy of a published scene, with the same file name and a title that looks like markup."""
     own = PUBLISHED[0].path.read_text().replace('"flush"', '"toothed"').replace("H/L = 0.5, b/a = 4", "my [/b] wall")
     (tmp_path / "panel-01.toml").write_text(own)
     arguments = [str(tmp_path / "panel-01.toml"), "--models", "limit", "--jobs", "1", "--out", str(tmp_path / "out")]
@@ -473,15 +469,15 @@ def test_your_own_wall_is_yours_whatever_its_file_is_called(tmp_path: Path, caps
     assert not (tmp_path / "out" / "figure-6.png").exists()
 
 
-def test_results_lying_about_do_not_hide_a_published_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_result_folders_do_not_hide_published_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for _ in range(2):
         assert command(["compare", "panel-04", "--models", "limit", "--jobs", "1", "--out", "."]) == 0
     assert command(["run", "panel-04", "--model", "homog"]) == 0
 
 
-def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
-    """As the kernel does to one that takes all the memory: its case is run again, the others stay."""
+def test_killed_worker_does_not_stop_the_other_cases(tmp_path: Path) -> None:
+    """Killed as by the kernel if memory runs out; the other cases are still computed."""
     process = start(tmp_path, "panel-11", "panel-04", "wall-w3", "--models", "limit,limit-nonassociated")
     deadline = time.monotonic() + 60
     while not list(tmp_path.glob("*/*/outcome.json")) and time.monotonic() < deadline:
@@ -500,16 +496,14 @@ def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["..toml", "...toml"])
-def test_a_name_of_dots_is_refused_for_it_names_no_folder(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_scene_file_without_a_stem_is_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_toml(content(), tmp_path / name)
     assert command(["compare", str(tmp_path / name), "--models", "limit", "--out", str(tmp_path / "out")]) == 2
     assert "must have a name before .toml" in capsys.readouterr().err
     assert [each.name for each in tmp_path.iterdir()] == [name]
 
 
-def test_a_scene_file_whose_name_is_no_text_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_scene_file_with_an_undecodable_name_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tables = content(wall__length=0.48, wall__height=0.24)
     del tables["title"]
     os.rename(write_toml(tables, tmp_path / "wall.toml"), os.fsencode(tmp_path) + b"/w\xe9nd.toml")
@@ -520,26 +514,26 @@ def test_a_scene_file_whose_name_is_no_text_is_compared(tmp_path: Path, capsys: 
     assert command(["run", path, "--model", "limit", "--out", str(tmp_path / "run")]) == 0
 
 
-def no_file_may_grow() -> None:
+def forbid_file_growth() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 
 
 @pytest.mark.parametrize(
     "line", ["compare panel-04 --models limit --out", *at_length("run panel-04 --model limit --out")]
 )
-def test_where_no_file_may_grow_that_is_one_line(line: str, tmp_path: Path) -> None:
-    """`ulimit -f 0`: found out before anything is computed; and the exit code is right if nothing can be said."""
+def test_file_size_limit_of_zero_is_a_one_line_error(line: str, tmp_path: Path) -> None:
+    """`ulimit -f 0` is found before anything is computed; the exit code is right even if no message can be printed."""
     words = [SCRIPT, *line.split(), str(tmp_path)]
-    said = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=no_file_may_grow)
+    said = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=forbid_file_growth)
     assert said.returncode == 2
     assert said.stderr == f"runningbond: {tmp_path}: File too large\n"
     assert said.stdout == ""
     with (tmp_path / "silent").open("wb") as silent:
-        done = subprocess.run(words, stdout=silent, stderr=silent, check=False, preexec_fn=no_file_may_grow)
+        done = subprocess.run(words, stdout=silent, stderr=silent, check=False, preexec_fn=forbid_file_growth)
     assert done.returncode == 2
 
 
-def test_a_backend_that_is_none_is_bad_input() -> None:
+def test_unknown_matplotlib_backend_is_bad_input() -> None:
     wrong = os.environ | {"MPLBACKEND": "nonsense"}
     line = [SCRIPT, "compare", "panel-04", "--models", "limit"]
     said = subprocess.run(line, capture_output=True, text=True, check=False, env=wrong)
@@ -548,16 +542,14 @@ def test_a_backend_that_is_none_is_bad_input() -> None:
     assert said.stderr.count("\n") == 1
 
 
-def test_a_broken_pipe_is_no_complaint() -> None:
+def test_broken_pipe_is_no_error() -> None:
     line = f"{SCRIPT} run panel-04 --model limit | true; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_of_two_comparisons_that_end_at_once_one_waits_to_write_its_tables(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Or tables were of one, pictures of the other, and each took away what the other had drawn."""
+def test_folder_is_locked_while_tables_are_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a lock, of two comparisons that end at once the tables could be of one and the pictures of the other."""
     fcntl, compare = pytest.importorskip("fcntl"), import_module("runningbond.commands.compare")
     report, found = vars(compare)["_report"], list[bool]()
 
@@ -577,10 +569,10 @@ def test_of_two_comparisons_that_end_at_once_one_waits_to_write_its_tables(
     assert (tmp_path / "report.html").is_file()
 
 
-def test_why_a_model_does_not_apply_to_a_wall_of_ones_own_is_told(
+def test_note_says_why_a_model_does_not_apply_to_an_own_scene(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of a wall without a stiffness nothing was said but n/a; that W3 has no closed form is known."""
+    """For a wall without stiffness only n/a was printed; for the published W3 without closed form that suffices."""
     own = str(write_toml(content(), tmp_path / "own.toml"))
     line = ["compare", own, "wall-w3", "--models", "homog,dem-static", "--tolerance", "0.1", "--jobs", "1"]
     assert command([*line, "--out", str(tmp_path / "out")]) == 0
@@ -590,7 +582,7 @@ def test_why_a_model_does_not_apply_to_a_wall_of_ones_own_is_told(
 
 
 def test_a_note_names_its_model_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """As `run` it says "model homog: has no closed form"."""
+    """`run` prints "model homog: has no closed form", but the note already begins with the model's name."""
     opened = [[1, 1, 1], [1, -1, 1], [1, 1, 1]]
     own = str(write_toml(content(wall__length=None, wall__height=None, wall__courses=opened), tmp_path / "own.toml"))
     assert command(["compare", own, "--models", "homog", "--jobs", "1", "--out", str(tmp_path / "out")]) == 0

@@ -1,4 +1,4 @@
-"""The report of a comparison is one page that holds everything, and opens in a browser without a complaint."""
+"""The report of a comparison is one self-contained page that opens in a browser without console messages."""
 
 import base64
 import csv
@@ -21,9 +21,9 @@ from PIL import Image
 from runningbond.campaigns import Campaign
 from runningbond.commands.command_line import command
 from runningbond.compare import PUBLISHED, published_scene
-from runningbond.compare.figures import BORNE, charts_of, draw_figures, table_2, wall_curves
+from runningbond.compare.figures import CURVE_START, charts_of, draw_figures, table_2, wall_curves
 from runningbond.compare.plates import draw_plates, plates
-from runningbond.compare.report import FULL, report_html, verdict
+from runningbond.compare.report import FULL_COLOUR, report_html, verdict
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
 from runningbond.models import MODELS
 from runningbond.pictures.captions import is_force
@@ -38,7 +38,7 @@ BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "
 
 
 def outcome(scene: Scene, model: str) -> Outcome:
-    """A mechanism that every wall has: what lies above the lowest third of it moves along by one metre."""
+    """A mechanism of any wall: blocks above its lowest third move sideways by 1 m; with moments, except `limit`."""
     low, high = scene.blocks.extent(scene.wall)
     above = scene.wall & (scene.blocks.centroid[:, 1] > low[1] + (high - low)[1] / 3) & ~scene.fixed
     motion = fastest_corner_by_one(scene.blocks, above[:, None] * np.array([1.0, 0.0, 0.0]))
@@ -47,7 +47,7 @@ def outcome(scene: Scene, model: str) -> Outcome:
 
 
 class State(NamedTuple):
-    """A moment."""
+    """State of a run at one moment."""
 
     multiplier: float
     motion: Array
@@ -78,7 +78,7 @@ def page(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 
 class Reader(HTMLParser):
-    """What a page has in its tables, and what it loads."""
+    """Parser that collects the tables, identifiers and links of a page."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -115,7 +115,7 @@ def read(page: Path) -> Reader:
     return reader
 
 
-def test_every_published_figure_of_mechanisms_has_its_plate(comparison: Comparison) -> None:
+def test_every_published_figure_of_mechanisms_has_a_plate(comparison: Comparison) -> None:
     """Figures 8 to 10 are H/L = 1/2, 1 and 2 of the four textures, Figure 12 the concentrated load."""
     found = {plate.name: plate for plate in plates(comparison)}
     assert list(found) == ["figure-8", "figure-9", "figure-10", "figure-12", "mechanisms-ferris"]
@@ -129,7 +129,7 @@ def test_every_published_figure_of_mechanisms_has_its_plate(comparison: Comparis
 
 
 def test_a_plate_has_a_wall_in_every_cell(drawn: list[Path]) -> None:
-    """Under each model's name a wall slides in every row: in each column and row there is green, if only faint."""
+    """A wall slides in every cell: each has pixels of the green of displacements, if only faint."""
     image = np.asarray(Image.open(next(path for path in drawn if path.stem == "figure-9")).convert("RGB")).astype(int)
     red, green, blue = image[: -int(0.05 * len(image))].transpose(2, 0, 1)
     there = (green > red + 25) & (green > blue + 12)
@@ -139,7 +139,7 @@ def test_a_plate_has_a_wall_in_every_cell(drawn: list[Path]) -> None:
             assert cell.sum() > 20
 
 
-def test_a_report_needs_nothing_from_anywhere(page: Path) -> None:
+def test_report_loads_nothing_from_outside(page: Path) -> None:
     reader = read(page)
     within = {f"#{name}" for name in reader.identifiers}
     assert all(link.startswith("data:") or link in within for link in reader.linked)
@@ -154,8 +154,8 @@ def drawings(page: Path, kind: str) -> list[ET.Element]:
     return [ET.fromstring(text) for text in re.findall(rf'<svg class="{kind}".*?</svg>', content, re.DOTALL)]
 
 
-def test_a_report_has_every_chart_and_every_mechanism(page: Path, comparison: Comparison) -> None:
-    """Of the walls of one's own and of papers; each with a block for each that moves, and no bitmaps."""
+def test_report_has_every_chart_and_mechanism(page: Path, comparison: Comparison) -> None:
+    """Each mechanism has one block drawn for each that moves, and there are no bitmaps."""
     assert len(drawings(page, "chart")) == len(charts_of(comparison))
     walls = drawings(page, "wall")
     cells = [(comparison.scenes[name], outcome) for (name, _), outcome in comparison.campaign.outcomes.items()]
@@ -168,8 +168,8 @@ def test_a_report_has_every_chart_and_every_mechanism(page: Path, comparison: Co
     assert not any(list(drawing.iter("image")) for drawing in (*walls, *drawings(page, "chart")))
 
 
-def test_moments_of_a_collapse_are_under_a_slider(page: Path, comparison: Comparison) -> None:
-    """Motions of first corners and rotations, as the page holds them, are those of the outcome, to a step of 127."""
+def test_moments_in_the_report_match_the_outcome(page: Path, comparison: Comparison) -> None:
+    """Displacements of first corners in the page are those of the outcome, rounded to 1/127 of the largest."""
     content = page.read_text(encoding="utf-8")
     found = re.findall(r'data-of="(.*?)" data-motion="(.*?)" data-unit="(.*?)" data-said="(.*?)"', content)
     kept = [(name, outcome) for (name, _), outcome in comparison.campaign.outcomes.items() if len(outcome.moments)]
@@ -188,8 +188,8 @@ def test_moments_of_a_collapse_are_under_a_slider(page: Path, comparison: Compar
     assert f'<path id="{rest}"' in content
 
 
-def test_an_outcome_keeps_the_first_the_last_and_the_largest_load() -> None:
-    """Of a wall that goes twice as far with every state, whose load is largest at the third."""
+def test_outcome_keeps_the_first_last_and_peak_states() -> None:
+    """For a wall whose displacement doubles with every state, and whose load is largest at the fourth of twelve."""
     scene = published_scene("panel-01")
     sway = np.where(scene.wall[:, None], [1e-3, 0.0, 0.0], 0.0)
     states = [State(0.5 - 0.01 * abs(k - 3), 2**k * sway) for k in range(12)]
@@ -204,9 +204,9 @@ def test_an_outcome_keeps_the_first_the_last_and_the_largest_load() -> None:
     assert not len(with_moments(scene, Outcome("", "fem", "undecided"), pieces).moments)
 
 
-def test_colours_tell_how_far_an_entry_is_from_the_median(comparison: Comparison) -> None:
-    """A model 15 % above the two others is coloured half as strongly as can be, a printed value far below fully."""
-    outcomes = {("panel-12", "limit"): Outcome("", "limit", "collapse", 0.5 * (1 + FULL / 2))}
+def test_colours_show_the_distance_from_the_median(comparison: Comparison) -> None:
+    """A model 15 % above the two others has half the full colour, a printed value far below them the full colour."""
+    outcomes = {("panel-12", "limit"): Outcome("", "limit", "collapse", 0.5 * (1 + FULL_COLOUR / 2))}
     outcomes |= {("panel-12", name): Outcome("", name, "collapse", 0.5) for name in ("dem-static", "dem-dynamic")}
     one = replace(comparison, scenes={"panel-12": published_scene("panel-12")}, campaign=Campaign(outcomes))
     content = report_html(one, {}, 0.01)
@@ -228,8 +228,8 @@ def test_the_verdict_names_the_largest_disagreement(comparison: Comparison) -> N
     assert said[0] == "75 cases: 19 walls by 4 models. 74 end in a collapse load, 1 unbounded."
 
 
-def test_curves_show_their_elastic_range(comparison: Comparison) -> None:
-    """Of a wall that is elastic up to 1 µm and then flows to 10 mm, from the quarter of its peak on."""
+def test_load_curves_show_the_elastic_range(comparison: Comparison) -> None:
+    """For a wall that is elastic up to 1 µm and then yields up to 10 mm; drawn from `CURVE_START` of its peak on."""
     curve = np.array([[0, 0], [1e-6, 0.6], [1e-2, 0.6]])
     outcomes = {("panel-01", "fem"): Outcome("", "fem", "collapse", 0.6, curve=curve)}
     figure = wall_curves(replace(comparison, campaign=Campaign(outcomes)), "panel-01")
@@ -237,7 +237,7 @@ def test_curves_show_their_elastic_range(comparison: Comparison) -> None:
     (axes,) = figure.axes
     moved, load = (np.asarray(data, dtype=float) for data in axes.lines[0].get_data())
     assert axes.get_xscale() == "log"
-    assert (moved[0], load[0]) == pytest.approx((BORNE * 1e-3, BORNE * 0.6), rel=1e-9)
+    assert (moved[0], load[0]) == pytest.approx((CURVE_START * 1e-3, CURVE_START * 0.6), rel=1e-9)
     assert (moved[-1], load[-1]) == pytest.approx((10.0, 0.6))
     elastic = moved < 0.999e-3
     assert load[elastic] == pytest.approx(600 * moved[elastic], rel=1e-9)
@@ -260,8 +260,8 @@ def test_the_tables_have_the_sixteen_published_panels(page: Path, comparison: Co
     assert {"runningbond", "Python", "numpy", "vtk", "pyvista", "tolerance"} <= set(versions)
 
 
-def test_multipliers_and_loads_in_newtons_stand_apart(comparison: Comparison) -> None:
-    """In no table and no row of the CSV file λ and newtons are mixed up, nor among walls of one's own."""
+def test_multipliers_and_newtons_are_in_separate_tables(comparison: Comparison) -> None:
+    """No table mixes λ and newtons, also for own scenes, and each row of the CSV file states its unit."""
     scenes = {**comparison.scenes, "mine": published_scene("panel-01"), "yours": published_scene("point-load-1")}
     mixed = replace(comparison, scenes=scenes)
     for sheet in (*multiplier_sheets(mixed), *cost_sheets(mixed)):
@@ -274,8 +274,8 @@ def test_multipliers_and_loads_in_newtons_stand_apart(comparison: Comparison) ->
     }
 
 
-def test_a_model_without_an_answer_is_drawn_hollow(comparison: Comparison) -> None:
-    """In the chart of Table 2: undecided with a bound, and with nothing known at all; decided ones are solid."""
+def test_outcomes_without_a_load_have_hollow_markers(comparison: Comparison) -> None:
+    """In the chart of Table 2: an undecided outcome with a bound and an unbounded one; decided ones are solid."""
     outcomes = dict(comparison.campaign.outcomes)
     outcomes["panel-05", "dem-static"] = Outcome("", "dem-static", "undecided", upper=0.3)
     figure = table_2(replace(comparison, campaign=Campaign(outcomes)))
@@ -290,16 +290,16 @@ def test_a_model_without_an_answer_is_drawn_hollow(comparison: Comparison) -> No
     assert {patch.get_facecolor() for patch in bars} == {to_rgba("white"), to_rgba(static)}
 
 
-def test_groups_of_the_chart_of_table_2_stand_apart(comparison: Comparison) -> None:
-    """The marks of one texture end before those of the next begin, by more than they keep among themselves."""
+def test_textures_are_separated_in_the_chart_of_table_2(comparison: Comparison) -> None:
+    """The gaps between the markers of two textures are wider than those between the markers of one."""
     for axes in table_2(comparison).axes:
         places = np.sort(np.concatenate([line.get_xdata() for line in axes.lines]))
         gaps = np.diff(np.unique(np.round(places, 6)))
         assert len(gaps[gaps > 1.2 * gaps.min()]) == 3
 
 
-def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:
-    """Headless Chromium: every drawing is laid out, heads take the focus and sort, the console is silent."""
+def test_report_opens_in_a_browser_without_console_messages(page: Path) -> None:
+    """In headless Chromium every drawing is laid out, table heads take the focus and sort, and the slider works."""
     if BROWSER is None:
         pytest.skip("no Chromium on this machine")
     probe = """<script>addEventListener("load", () => setTimeout(() => {
@@ -340,7 +340,7 @@ def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:
     assert "CONSOLE" not in seen.stderr
 
 
-def test_compare_writes_a_report_of_walls_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_compare_writes_a_report_of_own_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write_toml(content(wall__length=0.48, wall__height=0.24, title="<mine> & yours"), tmp_path / "a & b.toml")
     out = tmp_path / "out"
     assert command(["compare", str(path), "--models", "homog,limit", "--out", str(out), "--jobs", "1"]) == 0

@@ -1,4 +1,4 @@
-"""`dem-dynamic` on published walls: the known numbers, and no dependence on what should not matter."""
+"""`dem-dynamic` on published walls: the known loads, and independence of numerical parameters."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ from tests.at_length import at_length
 from tests.walls import panel
 
 ROUNDED = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
-"""Ferris & Tin-Loi's walls with contacts 20 mm in, recomputed for this project: one number, not an interval."""
+"""Ferris & Tin-Loi's walls with contacts 20 mm inside, recomputed for this project: one load, not an interval."""
 
 
 def rounded(name: str) -> Scene:
@@ -29,7 +29,7 @@ def rounded(name: str) -> Scene:
 
 
 @pytest.mark.parametrize("name", ["wall-w1", *at_length("wall-w2", "wall-w3")])
-def test_rounded_walls_fall_where_they_should(name: str) -> None:
+def test_rounded_walls_have_their_known_load(name: str) -> None:
     outcome = dem_dynamic(rounded(name))
     assert outcome.status == "collapse"
     assert outcome.lower is not None
@@ -39,8 +39,8 @@ def test_rounded_walls_fall_where_they_should(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["wall-w1", *(pytest.param(f"wall-w{k}", marks=pytest.mark.long) for k in (2, 3))])
-def test_bracket_stays_where_it_is(name: str) -> None:
-    """Twice the displacement that counts as collapse, half the first load step, half the speed: brackets overlap."""
+def test_bracket_does_not_depend_on_numerical_parameters(name: str) -> None:
+    """Brackets overlap for twice the collapse displacement, half the first load step and half the loading speed."""
     scene = rounded(name)
     run, far = quasi_static_run(scene), U_CRIT * scene.block_size
 
@@ -58,10 +58,10 @@ def test_bracket_stays_where_it_is(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "bound"), [("point-load-2", 99.3e3), ("point-load-4", 260.4e3)])
-def test_walls_without_weight_are_loaded_slowly_enough(name: str, bound: float) -> None:
-    """The paper's concentrated loads: at half the speed the bracket stays, and is below the associated bound.
+def test_weightless_walls_are_loaded_slowly_enough(name: str, bound: float) -> None:
+    """The paper's concentrated loads: the bracket holds at half the speed and lies below the associated bound.
 
-    Motions followed twice as far before they count as a collapse leave it where it is.
+    It also holds if motions are followed twice as far before they count as collapse.
     """
     scene = published_scene(name)
     outcome = dem_dynamic(scene)
@@ -85,15 +85,15 @@ BACKWARDS = [
     (fem, "panel-09"),
     (fem, "point-load-2"),
 ]
-"""Mechanisms on which the live load did negative work when a later rest was taken for their start."""
+"""Cases whose mechanism once had negative work of the live load, because it started from a later state of rest."""
 
 
 @pytest.mark.parametrize(
     ("model", "name"),
     [(dem_dynamic, "wall-w1"), (fem, "wall-w1"), *(pytest.param(*each, marks=pytest.mark.long) for each in BACKWARDS)],
 )
-def test_the_live_load_works_on_the_mechanism_and_joints_hardly_overlap(model: Any, name: str) -> None:
-    """Overlaps of at most three per cent of the fastest corner's motion, which is one metre."""
+def test_live_load_does_positive_work_and_joints_barely_overlap(model: Any, name: str) -> None:
+    """Overlaps of at most three per cent of the fastest corner's motion, which is scaled to one metre."""
     scene = published_scene(name)
     motion = model(scene, 0.05).motion
     opening, _ = rigid_jumps(scene.blocks, wall_points(scene), motion)
@@ -105,8 +105,8 @@ def test_the_live_load_works_on_the_mechanism_and_joints_hardly_overlap(model: A
     "name",
     [*ROUNDED, "panel-04", *at_length("panel-02", "point-load-quarter")],
 )
-def test_never_above_the_associated_bound(name: str) -> None:
-    """By more than the bracket's width; the sharp walls inside or below their certified intervals."""
+def test_load_is_not_above_the_associated_bound(name: str) -> None:
+    """The lower end of the bracket does not exceed the load of associated limit analysis."""
     scene = published_scene(name)
     outcome, bound = dem_dynamic(scene), limit(scene).upper
     assert outcome.status == "collapse"
@@ -119,13 +119,13 @@ def test_never_above_the_associated_bound(name: str) -> None:
 @pytest.mark.parametrize(
     "name", [*(f"panel-{row:02d}" for row in range(1, 13)), "point-load-4", "point-load-2", "point-load-1"]
 )
-def test_every_published_panel_falls_at_or_below_the_bound(name: str) -> None:
-    test_never_above_the_associated_bound(name)
+def test_published_panels_are_not_above_the_associated_bound(name: str) -> None:
+    test_load_is_not_above_the_associated_bound(name)
 
 
 @pytest.mark.long
 def test_240_by_120_wall_lies_between_other_programs_and_the_bound() -> None:
-    """LP .5003; other programs scatter over .465 … .499 on it, recorded for this project."""
+    """LP .5003; other programs yield .465 … .499 for this wall, recorded for this project."""
     outcome = dem_dynamic(wall_240_by_120())
     assert outcome.lower is not None
     assert outcome.upper is not None

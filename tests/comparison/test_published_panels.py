@@ -51,41 +51,43 @@ def variant(name: str, row: int) -> Scene:
 @pytest.mark.parametrize("row", range(12))
 @pytest.mark.parametrize("name", REFERENCE)
 def test_limit_analysis_of_the_twelve_panels(name: str, row: int) -> None:
-    """To 5e-4, with forces and mechanism proving each other."""
+    """To 5e-4, with forces and mechanism certifying each other."""
     state = limit_state(equilibrium(variant(name, row)))
     assert state.forces.multiplier * state.system.live_unit == pytest.approx(REFERENCE[name][row], abs=5e-4)
     assert max(state.measures.values()) < 1e-7, state.measures
 
 
 @pytest.mark.parametrize("row", range(12))
-def test_shipped_scenes_are_those_panels(row: int) -> None:
+def test_shipped_scenes_equal_the_panels(row: int) -> None:
     shipped, built = published_scene(f"panel-{row + 1:02d}"), variant("tan φ = 0.6", row)
     assert (shipped.blocks.vertices == built.blocks.vertices).all()
     assert shipped.joint.friction == 0.6
 
 
 NONASSOCIATED = {1: (0.6, 0.6), 2: (0.4771, 0.4997), 4: (0.0893, 0.1592), 5: (0.6, 0.6), 6: (0.4197, 0.4339)}
-"""Certified intervals by the panels' rows in Table 2: each end is proved on the forces below and in tests/limit. Both
-ends may move apart as the search gets better; they may not come closer."""
+"""Certified intervals by row of the panels in Table 2; each end is proved with the forces below and in tests/limit.
 
-SHORT, SHORTER = 300, 110
-"""Linear programs that find them, and those of the tall panels; the usual search goes on for up to 45 s."""
+The ends may move apart as the search improves, but not closer together.
+"""
 
-USUAL = NONASSOCIATED | {3: (0.2591, 0.3098), 9: (0.4208, 0.4259), 12: (0.0662, 0.0986)}
-"""What that finds, of `make compare`."""
+SHORT_SEARCH, SHORTER_SEARCH = 300, 110
+"""Numbers of linear programs that find these intervals, and for tall panels; the full search takes up to 45 s."""
+
+FULL_SEARCH = NONASSOCIATED | {3: (0.2591, 0.3098), 9: (0.4208, 0.4259), 12: (0.0662, 0.0986)}
+"""Intervals found by the full search of `make compare`."""
 
 
 @pytest.mark.parametrize("row", [4, *at_length(1, 2, 5, 6)])
 def test_true_friction_on_small_panels(row: int) -> None:
-    outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"), programs=SHORT)
+    outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"), programs=SHORT_SEARCH)
     low, high = NONASSOCIATED[row]
     assert outcome.status == "collapse"
     assert outcome.lower == pytest.approx(low, abs=5e-4)
     assert outcome.upper == pytest.approx(high, abs=5e-4)
 
 
-def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() -> None:
-    """Row 4: equilibrium, Coulomb's law and opposition to the slip, at the smallest and the largest load."""
+def test_mechanism_is_certified_at_both_ends_of_the_interval() -> None:
+    """Row 4: equilibrium, Coulomb's law and friction opposite to slip, at the smallest and the largest load."""
     system = equilibrium(published_scene("panel-04"))
     certificates = search(system, limit_state(system).forces, 5).certificates
     assert max(c.most.multiplier for c in certificates) * system.live_unit > 0.13
@@ -107,9 +109,9 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
 
 @pytest.mark.parametrize("row", at_length(9, 12))
 def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: int) -> None:
-    """By a short search; the usual one finds loads beyond both ends (`USUAL`)."""
-    low, high = {9: (0.423, 0.4265), 12: (0.066, 0.118)}[row]  # of 12 to the associated bound
-    outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"), programs=SHORTER)
+    """By a short search; the full one finds loads beyond both ends (`FULL_SEARCH`)."""
+    low, high = {9: (0.423, 0.4265), 12: (0.066, 0.118)}[row]  # for row 12 up to the associated bound
+    outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"), programs=SHORTER_SEARCH)
     assert outcome.lower is not None
     assert outcome.upper is not None
     assert low - 5e-4 <= outcome.lower <= outcome.upper <= high + 5e-4
@@ -118,14 +120,14 @@ def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: in
 @pytest.mark.long
 @pytest.mark.parametrize("row", [*range(1, 13)])
 def test_true_friction_is_certified_on_every_panel(row: int) -> None:
-    """Within the associated bound, and at both ends that were certified before or beyond them."""
+    """Below the associated bound, and reaching or passing both ends that were certified before."""
     scene = published_scene(f"panel-{row:02d}")
     outcome = limit_nonassociated(scene)
     assert outcome.status == "collapse"
     assert outcome.lower is not None
     assert outcome.upper is not None
     assert outcome.upper <= (limit(scene).upper or 0) * (1 + 1e-9)
-    low, high = USUAL.get(row, (np.inf, -np.inf))
+    low, high = FULL_SEARCH.get(row, (np.inf, -np.inf))
     assert outcome.lower <= low + 5e-4
     assert outcome.upper >= high - 5e-4
 
@@ -143,7 +145,7 @@ def test_concentrated_loads(name: str, kilonewtons: float) -> None:
 
 @pytest.mark.parametrize(("b", "a"), [(0.24, 0.06), (0.12, 0.06), (0.06, 0.06), (0.06, 0.24)])
 def test_concentrated_loads_lock_between_held_corners(b: float, a: float) -> None:
-    """A strut of slope 2 to 1 needs no more than tan φ = 1/2."""
+    """A strut with slope 2 to 1 needs only tan φ = 1/2."""
     scene = scene_from_dict(
         content(
             wall__height=1.44,
@@ -157,8 +159,8 @@ def test_concentrated_loads_lock_between_held_corners(b: float, a: float) -> Non
     assert limit(scene).status == "unbounded"
 
 
-def test_without_cohesion_the_concentrated_load_needs_no_force_at_all() -> None:
-    """Dry and weightless on pin and roller nothing ties the thrust: λ = 0, and not a failure."""
+def test_concentrated_load_without_cohesion_is_zero() -> None:
+    """A dry weightless wall on pin and roller cannot resist the thrust: λ = 0, which is no failure of the solver."""
     scene = published_scene("point-load-4")
     dry = scene.with_joint(cohesion=0.0, tensile_strength=0.0)
     assert limit(dry).multiplier == pytest.approx(0, abs=1e-9)

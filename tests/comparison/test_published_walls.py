@@ -34,8 +34,8 @@ ROUNDED = list(zip(WALLS, (0.5856, 0.5244, 0.3374), (0.5856, 0.5244, 0.3432), st
 
 
 @pytest.mark.parametrize(("name", "multiplier", "most"), [ROUNDED[0], ROUNDED[2], *at_length(ROUNDED[1])])
-def test_rounded_corners_make_it_one_number_or_nearly(name: str, multiplier: float, most: float) -> None:
-    """Contacts 20 mm in from the joint ends: W1 and W2 close on the recorded value; of W3 .3431 is certified too."""
+def test_rounded_corners_give_one_load_or_nearly(name: str, multiplier: float, most: float) -> None:
+    """Contacts 20 mm inside the joint ends: W1 and W2 have the recorded value; for W3 .3431 is certified as well."""
     scene = published_scene(name)
     outcome = limit_nonassociated(scene.with_joint(inset=0.02))
     assert outcome.status == "collapse"

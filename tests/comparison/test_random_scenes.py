@@ -1,4 +1,4 @@
-"""Any scene gets a result or one line, never a traceback; results keep their promises."""
+"""Any scene gives a result or a one-line error, never a traceback; results satisfy their definitions."""
 
 import json
 import tempfile
@@ -49,7 +49,7 @@ def _object_or_line(scene: dict[str, Any], model: str) -> None:
 
 
 def _second_opinion(scene: Scene) -> tuple[str, float]:
-    """Limit analysis written again: physical units, friction as inequalities, simplex."""
+    """Independent limit analysis: physical units, friction as inequalities, simplex method."""
     points = joint_points(scene.joints, scene.thickness, inset=scene.joint.inset)
     strength = point_strength(scene.joint, points.area)
     jump, free = jump_operator(points, scene.blocks.centroid), movable_freedoms(scene)
@@ -102,7 +102,7 @@ def _agrees(scene: dict[str, Any]) -> None:
 
 
 def limit_scale(scene: Scene) -> float:
-    """Multiplier at which the live load is as large as the largest weight or strength."""
+    """Multiplier at which the live load equals the largest weight or strength."""
     weight = float(np.abs(dead_load(scene)).max())
     return (weight or 1.0) / float(np.abs(live_load(scene)).max())
 
@@ -115,12 +115,12 @@ def test_limit_analysis_agrees_with_a_second_opinion(scene: dict[str, Any]) -> N
 
 @given(scene=spoilt(), model=st.sampled_from([*LIMITS, "homog"]))
 @settings(max_examples=150, **FEW)
-def test_any_scene_gets_an_object_or_a_line(scene: dict[str, Any], model: str) -> None:
+def test_any_scene_gives_a_result_or_one_line(scene: dict[str, Any], model: str) -> None:
     _object_or_line(scene, model)
 
 
-def test_most_random_walls_are_walls() -> None:
-    """Or the tests above would test refusals only."""
+def test_most_random_scenes_are_valid() -> None:
+    """Otherwise the tests above would test refusals only."""
     answered = []
 
     @given(scene=walls())
@@ -142,5 +142,5 @@ def test_limit_analysis_agrees_with_a_second_opinion_at_length(scene: dict[str, 
 @pytest.mark.long
 @given(scene=spoilt(), model=st.sampled_from([*LIMITS, "homog"]))
 @settings(**MANY)
-def test_any_scene_gets_an_object_or_a_line_at_length(scene: dict[str, Any], model: str) -> None:
+def test_any_scene_gives_a_result_or_one_line_at_length(scene: dict[str, Any], model: str) -> None:
     _object_or_line(scene, model)

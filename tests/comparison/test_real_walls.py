@@ -1,4 +1,4 @@
-"""Loads and materials of real walls: closed forms that every model must find, left and right alike."""
+"""Loads and materials of real walls: closed forms that every model must reproduce, also mirrored."""
 
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -19,7 +19,7 @@ MORTAR = {"young": 1e11, "poisson": 0.0, "thickness": 0.01}
 STONE = {"density": 2000.0, "young": 1e12}
 OAK = {"density": 700.0, "young": 1e12}
 G = 9.81 * 0.5
-"""Weight per volume of density 1, times the thickness of 0.5 m."""
+"""Weight per area for density 1 and a thickness of 0.5 m."""
 
 
 def scene_of(wall: dict[str, Any], friction: float = 0.6, **changes: Any) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def block(width: float, height: float, friction: float = 0.6, **changes: Any) ->
 
 
 def check(scene: Scene, exact: float, models: tuple[str, ...] = EVERY, sharp: float = 1e-6) -> None:
-    """Static and certified answers are sharp; the brackets of models in motion hold the answer to a thousandth."""
+    """Static and certified results are sharp; the brackets of dynamic models contain the answer to a thousandth."""
     for model in models:
         outcome = run_model(model, scene)
         assert outcome.status == "collapse", (model, outcome.message)
@@ -49,7 +49,7 @@ def check(scene: Scene, exact: float, models: tuple[str, ...] = EVERY, sharp: fl
 
 @pytest.mark.parametrize("side", ["right", "left"])
 @pytest.mark.parametrize(("friction", "height"), [(0.4, 1.0), (2.0, 1.6)])
-def test_a_block_on_a_tilting_plane_slides_at_phi_and_topples_at_its_diagonal(
+def test_block_on_a_tilting_plane_slides_at_phi_or_topples_at_its_diagonal(
     side: str, friction: float, height: float
 ) -> None:
     scene = block(1.0, height, friction, load__live={"kind": "tilt", "direction": side})
@@ -71,7 +71,7 @@ def test_the_same_block_from_a_drawing(side: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("side", "arm"), [(1, 0.25), (-1, 0.75)])
 def test_a_block_under_an_eccentric_line_load(side: int, arm: float) -> None:
-    """A load q on the right half of the top: F h = G b / 2 + q (b / 2) a, with its arm a about the edge it turns on."""
+    """A load q on the right half of the top: F h = G b / 2 + q (b / 2) a, with its lever a about the rotating edge."""
     line = {"kind": "line", "from": [0.5, 1.5], "to": [1.0, 1.5], "force": [0, -4e4]}
     push = {"kind": "point", "at": [0.5 - side * 0.5, 1.5], "force": [side, 0]}
     scene = block(1.0, 1.5, 2.0, load__live=push, load__dead=[line])
@@ -79,8 +79,8 @@ def test_a_block_under_an_eccentric_line_load(side: int, arm: float) -> None:
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_moment_turns_a_block_over_its_edge(side: int) -> None:
-    """M = G b / 2: for the block's weight alone, wherever the moment acts on it; a dead moment takes its part."""
+def test_moment_overturns_a_block(side: int) -> None:
+    """M = G b / 2, wherever the moment acts on the block; a dead moment is subtracted."""
     live = {"kind": "moment", "at": [0.3, 0.2], "moment": -side}
     dead = {"kind": "moment", "at": [0.9, 1.2], "moment": -side * 1e3}
     check(block(1.0, 1.5, load__live=live, load__dead=dead), 2000 * G * 1.5 * 0.5 - 1e3)
@@ -95,8 +95,8 @@ def test_live_loads_share_one_multiplier() -> None:
 
 
 @pytest.mark.parametrize("side", [1, *at_length(-1)])
-def test_a_lintel_of_oak_on_two_piers_of_stone(side: int) -> None:
-    """Both piers turn and lift the lintel by as much: F h = (P + L / 2 · 2) w with piers of weight P."""
+def test_oak_lintel_on_two_stone_piers(side: int) -> None:
+    """Both piers rotate and lift the lintel equally: F h = (P + L / 2 · 2) w with piers of weight P."""
     width, height, span, depth = 0.5, 2.0, 3.0, 0.3
     wall = {"courses": [[1, -4, 1], [6]], "block_width": 0.5, "course_heights": [height, depth]}
     tables = scene_of(wall, 3.0, load__live={"kind": "point", "at": [1.5 - side * 1.5, 2.0], "force": [side, 0]})
@@ -117,7 +117,7 @@ def arch_joints() -> Array:
 
 
 def arch(folder: Path, loaded: int) -> Scene:
-    """The arch on the ground, with a live load on the middle of the back of one voussoir."""
+    """The arch on the ground, with a live load on the middle of one voussoir's extrados."""
     document, joints = ezdxf.new(), arch_joints()  # type: ignore[attr-defined]
     document.modelspace().add_lwpolyline([(-4, -1), (4, -1), (4, 0), (-4, 0)], close=True)
     for left, right in pairwise(joints):
@@ -129,15 +129,15 @@ def arch(folder: Path, loaded: int) -> Scene:
     return read_scene(write_toml(tables, folder / "arch.toml"))
 
 
-def least_of_all_four_hinges(scene: Scene, loaded: int) -> float:
-    """Kinematic theorem, spelt out: the least load of any mechanism with four hinges, each at an end of a joint."""
+def least_load_of_four_hinges(scene: Scene, loaded: int) -> float:
+    """Kinematic theorem by enumeration: least load of all mechanisms with four hinges at joint ends."""
     joints, best = arch_joints(), np.inf
     weight, centre = scene.mass[:-1] * 9.81, scene.blocks.centroid[:-1]
     at = joints[loaded : loaded + 2, 1].mean(axis=0)
     for hinges in combinations(range(ARCH + 1), 4):
         for ends in range(16):
             points = [joints[k, (ends >> i) & 1] for i, k in enumerate(hinges)]
-            # Three parts turn with ω about points a, the pole, d; they go together at the hinges b and c.
+            # Three parts rotate about a, the pole and d; their velocities agree at the hinges b and c.
             a, b, c, d = points
             line, other = b - a, d - c
             across = np.column_stack([line, other])
@@ -155,7 +155,7 @@ def least_of_all_four_hinges(scene: Scene, loaded: int) -> float:
                 turn = rates[part + 1]
                 about = np.array([a, a, pole, d, d])[part + 1]
                 opening = np.diff(rates)
-                # A hinge at the inner end opens the outer one: the part on its right turns clockwise to it.
+                # A hinge at the inner end opens the outer end: the part on its right rotates clockwise.
                 inner = np.array([(ends >> i) & 1 == 0 for i in range(4)])
                 if not np.all(np.where(inner, opening, -opening) <= 1e-12):
                     continue
@@ -167,9 +167,9 @@ def least_of_all_four_hinges(scene: Scene, loaded: int) -> float:
 
 
 @pytest.mark.parametrize("loaded", [3, *at_length(1, 5)])
-def test_an_arch_under_a_load_that_moves_over_it(loaded: int, tmp_path: Path) -> None:
+def test_arch_under_a_moving_load(loaded: int, tmp_path: Path) -> None:
     scene = arch(tmp_path, loaded)
-    exact = least_of_all_four_hinges(scene, loaded)
+    exact = least_load_of_four_hinges(scene, loaded)
     if exact == np.inf:
         assert run_model("limit", scene).status == "unbounded"
         return
@@ -177,7 +177,7 @@ def test_an_arch_under_a_load_that_moves_over_it(loaded: int, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("unused", [{}, {"mortar": MORTAR, "compressive_strength": 1e3, "cohesion": 1e6}])
-def test_the_default_joint_material_says_nothing_of_a_wall_all_of_whose_joints_are_of_another(
+def test_unused_default_joint_material_has_no_effect(
     unused: dict[str, Any],
 ) -> None:
     scene = scene_from_dict(

@@ -1,4 +1,4 @@
-"""Stacks whose joints neither open nor slip: the way of their tops is that of springs in series, model by model."""
+"""Stacks with closed, sticking joints: in every model the top moves as springs in series."""
 
 from typing import Any
 
@@ -12,12 +12,12 @@ from tests.walls import courses
 COUNT, WIDTH, HEIGHT, THICKNESS = 4, 0.5, 0.4, 0.3
 NORMAL, SHEAR = 1e9, 4e8
 AREA = WIDTH * THICKNESS
-TURNS = NORMAL * AREA * WIDTH**2 / 4  # [N m] of a joint that is two springs at its ends
+ROTATIONAL = NORMAL * AREA * WIDTH**2 / 4  # [N m] of a joint with one spring at each end
 
 LIFT: dict[str, Any] = {"kind": "point", "at": [WIDTH / 2, COUNT * HEIGHT], "force": [0, 1]}
 PRESS: dict[str, Any] = {"kind": "point", "at": [WIDTH / 2, COUNT * HEIGHT], "force": [0, -1]}
 PUSH: dict[str, Any] = {"kind": "point", "at": [0.0, COUNT * HEIGHT], "force": [1, 0]}
-ARMS = [HEIGHT * (k + 1) for k in range(COUNT)]  # of the push about each joint
+ARMS = [HEIGHT * (k + 1) for k in range(COUNT)]  # levers of the push about each joint
 
 
 def stack(live: dict[str, Any]) -> Scene:
@@ -34,8 +34,8 @@ def stack(live: dict[str, Any]) -> Scene:
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
 @pytest.mark.parametrize("live", [LIFT, *at_length(PRESS)])
-def test_a_stack_is_lifted_and_pressed_from_where_it_rests(model: str, live: dict[str, Any]) -> None:
-    """n / (k_n A) a newton, from nothing at no load: what its weight has pressed it down by is not of the load."""
+def test_vertically_loaded_stack_moves_as_springs_in_series(model: str, live: dict[str, Any]) -> None:
+    """n / (k_n A) per newton, starting from zero: the settlement under dead load does not count."""
     curve = run_model(model, stack(live)).curve
     elastic = curve[curve[:, 1] < 1e4]
     assert elastic[0] == pytest.approx([0.0, 0.0], abs=1e-15)
@@ -44,10 +44,10 @@ def test_a_stack_is_lifted_and_pressed_from_where_it_rests(model: str, live: dic
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-def test_a_stack_that_is_pushed_shears_and_bends(model: str) -> None:
-    """Σ 1 / (k_t A) + arm² / (k_n A b² / 4) over the joints, a newton."""
+def test_pushed_stack_shears_and_bends_as_springs_in_series(model: str) -> None:
+    """Σ 1 / (k_t A) + arm² / (k_n A b² / 4) over the joints, per newton."""
     curve = run_model(model, stack(PUSH)).curve
-    elastic = curve[curve[:, 1] < 500.0]  # below what opens the lowest joint, whose tension its weight and glue bear
-    exact = sum(1 / (SHEAR * AREA) + arm**2 / TURNS for arm in ARMS)
+    elastic = curve[curve[:, 1] < 500.0]  # below the load that opens the lowest joint, held by weight and cohesion
+    exact = sum(1 / (SHEAR * AREA) + arm**2 / ROTATIONAL for arm in ARMS)
     assert len(elastic) > 4
     assert elastic[:, 0] == pytest.approx(exact * elastic[:, 1], rel=1e-3, abs=1e-10)

@@ -1,4 +1,4 @@
-"""Wide and narrow vector registers, and a library of linear algebra for each: the same brackets, to the last bit."""
+"""Wide and narrow vector registers, with a linear algebra library for each: bitwise equal brackets."""
 
 import json
 import os
@@ -58,10 +58,10 @@ NARROW = {
     "NPY_DISABLE_CPU_FEATURES": "AVX2 FMA3 AVX512F AVX512_SKX X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
     "OPENBLAS_NUM_THREADS": "1",
 }
-"""Registers of two numbers, which every x86-64 has, in kernels and in the linear algebra and functions of NumPy."""
+"""Registers of two numbers, which every x86-64 has, in kernels and in NumPy's linear algebra and functions."""
 
 WIDE = {"OPENBLAS_NUM_THREADS": "2"}
-"""What the machine has, and more than one thread, whatever the tests are run with."""
+"""The machine's own registers and more than one thread, whatever the tests are run with."""
 
 MODELS = ("limit-nonassociated", "dem-static", "dem-dynamic", "fem")
 QUICK = ["panel-04:limit-nonassociated", "panel-04:dem-static"]
@@ -69,7 +69,7 @@ CASES = [f"{case.name}:{model}" for case in PUBLISHED for model in MODELS]
 
 
 def answer(code: str, environment: dict[str, str], *arguments: str) -> object:
-    """What some code prints, in a process of its own."""
+    """Output of a program run in a separate process."""
     command = [sys.executable, "-c", code, *arguments]
     done = subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
@@ -81,19 +81,19 @@ x86 = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="
 @x86
 @pytest.mark.parametrize("cell", [*QUICK, *at_length(*(cell for cell in CASES if cell not in QUICK))])
 def test_brackets_do_not_depend_on_the_width_of_registers(cell: str) -> None:
-    """Status, bracket and number of steps of models on published walls: linear programs of a search are steps too."""
+    """Status, bracket and steps of models on published walls; linear programs of a search count as steps."""
     assert answer(BRACKET, NARROW, cell) == answer(BRACKET, WIDE, cell)
 
 
 @x86
 def test_modes_do_not_depend_on_the_width_of_registers() -> None:
-    """Square blocks, which bend one way as easily as the other; pinned ones; and masses scaled for frequencies."""
+    """Square blocks with equal bending modes in both directions, pinned blocks, and scaled masses."""
     names = ("panel-03", "point-load-1", "wall-w1")
     assert answer(MODES, NARROW, *names) == answer(MODES, WIDE, *names)
 
 
 @x86
 @pytest.mark.long
-def test_a_wall_that_is_shaken_does_not_depend_on_the_width_of_registers() -> None:
-    """Its contacts are found again and again, and its blocks bounce; time steps are of frequencies of the moment."""
+def test_response_does_not_depend_on_the_width_of_registers() -> None:
+    """With many contact searches, impacts, and time steps from the current highest frequency."""
     assert answer(SHAKEN, NARROW, "wall-w1") == answer(SHAKEN, WIDE, "wall-w1")

@@ -1,4 +1,4 @@
-"""Rigid blocks on joints that crush and close: stress blocks, closed forms of settlement, energy, listed forces."""
+"""Rigid blocks on joints that crush and close: stress blocks, settlement in closed form, energy, listed forces."""
 
 import sys
 from collections.abc import Callable
@@ -24,18 +24,18 @@ WIDTH, HEIGHT, WEIGHT = 0.4, 0.8, 1800 * 9.81 * 0.8  # m, m, Pa on the base
 
 
 def block(**joint: object) -> Scene:
-    """A block of 0.4 × 0.8 m, 0.12 m thick, on its base."""
+    """A block of 0.4 × 0.8 m, 0.12 m thick, on a base."""
     return courses([[1]], width=WIDTH, height=HEIGHT, joint={"friction": 5.0, **STIFF, **joint})
 
 
 @pytest.mark.parametrize("points", [2, 3, 5, 9])
-def test_a_block_topples_about_its_stress_block(points: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """M = N (l − x) / 2 with x = N / (t f_c): that of its points, to the bracket; with more of them, the joint's."""
+def test_block_topples_about_its_stress_block(points: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """M = N (l − x) / 2 with x = N / (t f_c): exact for the joint's points to the bracket, and converging with them."""
     monkeypatch.setattr(sys.modules[wall_rule.__module__], "BETWEEN", points)
     share = 0.2
     outcome = dem_dynamic(block(compressive_strength=WEIGHT / share, cap_shear=0.0), 5e-3)
     rule = lobatto(points)
-    # The toe's points carry their area's strength, the last of them the rest.
+    # The points at the toe carry the strength of their area, the last of them the rest.
     full = rule.weights / 2
     carried = np.minimum(full, np.maximum(0.0, share - (np.cumsum(full) - full)))
     at_points = -(carried @ rule.nodes) / share / 2 * WIDTH / (HEIGHT / 2)
@@ -45,8 +45,8 @@ def test_a_block_topples_about_its_stress_block(points: int, monkeypatch: pytest
     assert abs(at_points / exact - 1) < {2: 0.3, 3: 0.2, 5: 0.08, 9: 0.03}[points]
 
 
-def test_a_block_settles_as_its_joint_closes() -> None:
-    """Under its weight p by ln(1 + g p / k_n) / g, less than p / k_n."""
+def test_block_settles_by_joint_closure() -> None:
+    """Under its weight p by ln(1 + g p / k_n) / g, which is less than p / k_n."""
     growth = 1e5
     scene = block(closure={"growth": growth, "stiffest": 1e11})
     run = Run(rigid_system(scene))
@@ -69,10 +69,10 @@ def test_a_block_settles_as_its_joint_closes() -> None:
     ],
     ids=["plastic", "closing", "softening", "glued"],
 )
-def test_the_ledger_balances_while_a_toe_is_crushed(joint: dict[str, object]) -> None:
-    """Work of the loads is in motion, in springs, spent on the joint and damped, to 1 %, while a toe is crushed.
+def test_energy_balance_closes_while_toe_crushes(joint: dict[str, object]) -> None:
+    """Work of the loads = kinetic + stored + dissipated + damped, to 1 %, while a toe crushes.
 
-    The block is struck by its load: a quarter of the safe step, for what the ledger misses is of first order in it.
+    The load is applied suddenly: a quarter of the safe step, because the energy error is of first order in the step.
     """
     system = rigid_system(block(**joint))
     run = Run(system, dt=Run(system).safe_step / 4)
@@ -89,8 +89,8 @@ def test_the_ledger_balances_while_a_toe_is_crushed(joint: dict[str, object]) ->
     assert spent > 0
 
 
-def test_forces_are_listed_at_the_points_along_each_joint() -> None:
-    """Nine a joint, joint by joint along its tangent: resultants, reactions and pictures are those of the whole."""
+def test_forces_are_listed_at_points_along_each_joint() -> None:
+    """Nine per joint, joint by joint along its tangent: resultants, reactions and pictures are those of the whole."""
     scene = courses([[1, 1], [0.5, 1, 0.5]], joint={"friction": 0.6, **STIFF, "compressive_strength": 1e7})
     rule, outcome = wall_rule(scene), dem_dynamic(scene)
     points = wall_points(scene, rule)
@@ -117,8 +117,8 @@ def test_forces_are_listed_at_the_points_along_each_joint() -> None:
     assert outcome.multiplier == pytest.approx(plain.multiplier, rel=0.02)
 
 
-def test_deformable_blocks_crush_as_rigid_ones_do() -> None:
-    """Stiff blocks in triangles, nine points on each joint element of half the base, against nine on all of it."""
+def test_deformable_blocks_crush_as_rigid_blocks() -> None:
+    """Stiff blocks of triangles: nine points on each joint element, half the base long, against the stress block."""
     joint = {"compressive_strength": 5 * WEIGHT, "cap_shear": 0.0}
     outcome = fem(block(**joint).with_block(young=1e12), 5e-3)
     exact = 0.8 * WIDTH / HEIGHT
@@ -127,23 +127,23 @@ def test_deformable_blocks_crush_as_rigid_ones_do() -> None:
 
 
 @pytest.mark.parametrize("key", ["compressive_strength", "closure"])
-def test_models_read_crushing_and_closure_or_say_that_they_do_not(key: str) -> None:
+def test_models_use_crushing_and_closure_or_report_that_they_do_not(key: str) -> None:
     scene = block(**{key: 1e6 if key == "compressive_strength" else {"growth": 1e5, "stiffest": 1e11}})
     assert not [name for name in MODELS["dem-dynamic"].unread(scene) if name.startswith("joint.")]
     assert not [name for name in MODELS["fem"].unread(scene) if name.startswith("joint.")]
     assert f"joint.{key}" in MODELS["homog"].unread(scene)
-    with pytest.raises(SceneError, match=rf"^joint\.{key}: is not taken by dem-static"):
+    with pytest.raises(SceneError, match=rf"^joint\.{key}: is not supported by dem-static"):
         dem_static(scene)
 
 
-def test_a_joint_too_weak_for_the_weight_lets_the_wall_fall() -> None:
+def test_joint_too_weak_for_weight_is_infeasible() -> None:
     outcome = dem_dynamic(block(compressive_strength=0.9 * WEIGHT))
     assert isinstance(outcome, Outcome)
     assert outcome.status == "infeasible"
 
 
 def prism(courses: int, strength: float, stiffness: float, **load: Any) -> Scene:
-    """Blocks on one another, on joints that crush, under a load in the middle of their top."""
+    """A stack of blocks with crushing joints, under a load at the middle of the top."""
     push = {"kind": "point", "at": [0.2, 0.2 * courses], "force": [0, -1]}
     joint = {"friction": 0.7, "normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness}
     wall = {"courses": [[1]] * courses, "block_width": 0.4, "block_height": 0.2, "thickness": 0.1}
@@ -163,10 +163,10 @@ def prism(courses: int, strength: float, stiffness: float, **load: Any) -> Scene
     ("courses", "strength", "stiffness", "gravity"),
     [(4, 5e6, 1e9, 9.81), (1, 5e6, 4e8, 9.81), (1, 5e6, 1e10, 0.0), (1, 5e6, 1e10, 0.01)],
 )
-def test_a_column_crushes_under_its_strength_however_soft_or_light(
+def test_column_crushes_at_its_strength_for_any_stiffness_and_weight(
     solve: Callable[..., Outcome], courses: int, strength: float, stiffness: float, gravity: float
 ) -> None:
-    """At f A less what weighs on the lowest joint: such walls were told to lock, as joints that never crush do."""
+    """At f A less the weight on the lowest joint; such walls were reported as locking, as if joints could not crush."""
     scene = prism(courses, strength, stiffness, gravity=gravity)
     exact = strength * 0.4 * 0.1 - courses * 0.4 * 0.2 * 0.1 * 2000.0 * gravity
     found = solve(scene, 0.02)

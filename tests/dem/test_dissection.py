@@ -1,4 +1,4 @@
-"""Systems by nested dissection beside full ones: the same solutions, whatever has changed, and the same collapses."""
+"""Nested dissection against full matrices: the same solutions after any changes, and the same limit loads."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ SCENES = {
 
 
 def full(system: StaticSystem, tangent: Array, control: Control) -> Array:
-    """Matrix of all equations, ``(n, n)``, from the operators of the jumps."""
+    """Matrix of all equations, ``(n, n)``, from the jump operators."""
     nd, equations = system.freedoms, system.equilibrium
     jump = [operator.toarray() for operator in (system.opening, system.slip)]
     matrix = np.zeros((system.unknowns, system.unknowns))
@@ -49,7 +49,7 @@ def full(system: StaticSystem, tangent: Array, control: Control) -> Array:
 
 
 def tangents(system: StaticSystem, generator: np.random.Generator, share: float) -> Array:
-    """Coulomb tangents of points of which a share has opened or slides, regular by a little of their elasticity."""
+    """Coulomb tangents with a share of points open or sliding, regularized by a little of the elastic stiffness."""
     elastic = system.elastic
     tangent = elastic.copy()
     opens, slides = generator.random((2, len(elastic))) < share / 2
@@ -60,8 +60,8 @@ def tangents(system: StaticSystem, generator: np.random.Generator, share: float)
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("by_multiplier", [True, False])
-def test_dissected_systems_have_the_solutions_of_full_ones(name: str, by_multiplier: bool) -> None:
-    """One after the other: points change, many, few and none, and change back."""
+def test_dissection_solves_as_full_matrix(name: str, by_multiplier: bool) -> None:
+    """One after the other: many, few and no points change, and change back."""
     system = static_system(SCENES[name])
     generator = np.random.default_rng(1)
     many = tangents(system, generator, 0.5)
@@ -75,8 +75,8 @@ def test_dissected_systems_have_the_solutions_of_full_ones(name: str, by_multipl
 
 @settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
-def test_solutions_do_not_depend_on_the_order_of_unknowns_terms_and_blocks(seed: int) -> None:
-    """A grid of blocks with a coupling of its own for each pair of neighbours."""
+def test_solution_does_not_depend_on_order_of_unknowns(seed: int) -> None:
+    """A grid of blocks with a random coupling for each pair of neighbours; unknowns, terms and blocks are permuted."""
     generator = np.random.default_rng(seed)
     columns, rows = generator.integers(1, 12, size=2)
     position = np.array([(x, y) for x in range(columns) for y in range(rows)], dtype=float)
@@ -97,7 +97,7 @@ def test_solutions_do_not_depend_on_the_order_of_unknowns_terms_and_blocks(seed:
     assert factors.solve(np.zeros((0, 2, 2)), loads)[place] == pytest.approx(np.linalg.solve(matrix, right), abs=1e-10)
 
 
-def test_a_singular_system_is_refused_and_the_next_one_solved() -> None:
+def test_singular_system_is_refused_and_next_one_solved() -> None:
     system = static_system(ferris("W1"))
     right, control = np.ones(system.unknowns), Control(0.0, multiplier=True)
     with pytest.raises(np.linalg.LinAlgError):
@@ -107,7 +107,7 @@ def test_a_singular_system_is_refused_and_the_next_one_solved() -> None:
 
 
 def random_wall(seed: int) -> Scene:
-    """Courses of four blocks each, of any quarters of a width, on rounded corners."""
+    """Courses of four blocks each, with random widths in quarters, with inset contacts."""
     generator = np.random.default_rng(seed)
     cuts = [np.sort(generator.choice(np.arange(1, 16), 3, replace=False)) for _ in range(generator.integers(3, 7))]
     pattern = [list(np.diff(np.concatenate([[0], cut, [16]])) / 4) for cut in cuts]
@@ -122,8 +122,8 @@ def random_wall(seed: int) -> Scene:
         *at_length(ferris("W2", 0.02), ferris("W3", 0.02), *map(random_wall, range(2, 5))),
     ],
 )
-def test_walls_collapse_at_the_load_that_full_systems_find(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Brackets that overlap, within their width of 1 %."""
+def test_limit_loads_agree_with_full_matrices(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same multiplier within 1 %."""
     dissected = dem_static(scene)
     monkeypatch.setattr(
         StaticSystem,

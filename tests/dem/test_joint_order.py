@@ -1,4 +1,4 @@
-"""The order of joints in which the kernels of rigid blocks walk straight ahead."""
+"""Order of joints in which the kernels of rigid blocks access memory sequentially."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from tests.walls import courses
 
 
 @pytest.mark.parametrize("name", ["panel-01", "panel-06", "point-load-2"])
-def test_joints_each_of_its_own_friction_have_runs_as_long_as_joints_of_one(name: str) -> None:
+def test_joints_of_many_materials_have_runs_as_long_as_of_one(name: str) -> None:
     scene = published_scene(name)
     drawn = Scatter.read("friction=0.1").draw(scene, 1)
     alike, order = joint_order(scene), joint_order(drawn)
@@ -23,16 +23,16 @@ def test_joints_each_of_its_own_friction_have_runs_as_long_as_joints_of_one(name
     np.testing.assert_array_equal(rigid_system(drawn).interface.law.of_points(4), friction)
 
 
-def test_joints_of_two_materials_stand_together() -> None:
+def test_joints_of_two_materials_are_grouped() -> None:
     scene = published_scene("panel-06")
     weaker = replace(scene.joint, friction=scene.joint.friction / 2)
     of_joint = np.arange(len(scene.joints)) % 2
     two = replace(scene, joint_materials=(scene.joint, weaker), material_of_joint=of_joint)
-    assert len(rigid_system(two).interface.law.constants) == 2 * 2  # of first points, and of second ones
+    assert len(rigid_system(two).interface.law.constants) == 2 * 2  # for first points, and for second points
 
 
-def test_joints_of_another_thickness_are_in_runs_of_their_own() -> None:
-    """Kernels take a run's joints to be as large as its first one."""
+def test_joints_of_different_thickness_are_in_different_runs() -> None:
+    """Kernels assume that all joints of a run have the size of its first one."""
     pattern = [[1.0, 1.0, 1.0], [0.5, 1.0, 1.0, 0.5]] * 3
     materials = {"above": {"density": 1800.0, "thickness": 0.1}, "top": {"density": 1800.0, "thickness": 0.05}}
     storeys = {"above": [[0.0, 0.35], [1.2, 0.7]], "top": [[0.0, 0.7], [1.2, 1.05]]}

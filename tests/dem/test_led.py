@@ -1,4 +1,4 @@
-"""Walls whose beam or supports are led through displacements: closed forms, loops, mirrors and honest answers."""
+"""Walls driven by a beam or by moving supports: closed forms, cycles, mirror images and undecided results."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -37,7 +37,7 @@ from tests.limit.test_limit import rectangle
 from tests.walls import courses, panel
 
 K_N, K_T, WEIGHT = 1e10, 4e9, 1962.0
-"""Stiffness of joints [Pa/m], and weight of a square metre of wall of .1 m thickness [N]."""
+"""Stiffnesses of joints [Pa/m], and weight of a square metre of wall of .1 m thickness [N]."""
 
 
 def wall(blocks: list[Array], *live: Action, friction: float = 0.9, **other: Any) -> Scene:
@@ -63,7 +63,7 @@ def ground_moves(x0: float, x1: float, by: tuple[float, float] = (0.0, 0.0), ang
 
 
 def check(outcome: Outcome, exact: float, *, rel: float = 1e-6, upper: float | None = None) -> None:
-    """A collapse at an exact value, in a bracket around it, as narrow unless it is said how wide."""
+    """Assert collapse at an exact value, with a bracket around it, narrow unless a width is given."""
     assert outcome.status == "collapse", outcome.message
     assert outcome.multiplier == pytest.approx(exact, rel=rel)
     assert outcome.lower == pytest.approx(exact, rel=10 * rel)
@@ -80,17 +80,17 @@ PUSHES = [Drive((1.0, 0.0), 2.0), Drive.along((0.01,), 2.0)]
     ("condition", "exact"),
     [("level", (1e4 + WEIGHT) / 2), ("free", (1e4 / 2 + WEIGHT) / 2)],
 )
-def test_block_under_a_level_beam_bends_doubly_and_bears_twice_what_it_does_under_a_free_one(
+def test_block_under_level_and_under_free_beam_has_exact_strength(
     condition: Condition, exact: float, drive: Drive
 ) -> None:
-    """Level: N at one corner of its top and N + W at the opposite one of its base, H h = N b + W b/2.
-    Free, driven at the joint's height: N stays at the middle of the beam, H h = N b/2 + W b/2."""
+    """Level: N at one corner of the top and N + W at the opposite corner of the base, H h = N b + W b/2.
+    Free, driven at the height of its joint: N stays at the middle of the beam, H h = N b/2 + W b/2."""
     check(dem_static(under_beam(condition, drive)), exact, upper=None if drive.path else 0.01)
 
 
-def test_reactions_at_the_end_of_a_drive_are_those_by_hand() -> None:
-    """The level beam is held by N b/2 against the press at one of its corners, the ground bears N + W and −H; the drive
-    has done the work of the plateau, and that of its elastic start at half the force."""
+def test_reactions_at_end_of_drive_equal_hand_calculation() -> None:
+    """The moment N b/2 keeps the beam level against the pressure at a corner, the ground carries N + W and −H; the
+    drive has done the work of the plateau, and of the elastic start at half the force."""
     outcome = dem_static(under_beam("level", PUSHES[1]))
     most = (1e4 + WEIGHT) / 2
     end = dict(zip(outcome.path_columns, outcome.path[-1], strict=True))
@@ -101,8 +101,8 @@ def test_reactions_at_the_end_of_a_drive_are_those_by_hand() -> None:
     assert 0.99 * 0.01 * most < end["work of the live load [J]"] < 0.01 * most
 
 
-def test_settling_support_takes_what_the_dead_load_gives() -> None:
-    """A block that sinks with all its ground: W s from the dead load, and as much against the support's reaction."""
+def test_settling_support_takes_up_work_of_dead_load() -> None:
+    """A block that sinks with all its ground: work W s of the dead load, and as much against the support reaction."""
     outcome = dem_static(wall([rectangle(0, 0, 1, 1)], ground_moves(-3.0, 3.0, (0.0, -0.01))))
     check(outcome, 1.0)
     dead, live = outcome.path[:, -3:-1].T
@@ -111,8 +111,8 @@ def test_settling_support_takes_what_the_dead_load_gives() -> None:
 
 
 @pytest.mark.parametrize("condition", ["level", "free"])
-def test_driven_beam_slides_at_the_friction_of_its_own_joint(condition: Condition) -> None:
-    """μ N, the weight of the block below it not counting; its curve stays there."""
+def test_driven_beam_slides_at_friction_of_its_own_joint(condition: Condition) -> None:
+    """μ N, without the weight of the block below; the curve stays at this plateau."""
     outcome = dem_static(under_beam(condition, Drive.along((5e-3,), 2.0), friction=0.1))
     check(outcome, 1e3)
     assert outcome.curve[-1] == pytest.approx([5e-3, 1e3], rel=1e-6)
@@ -125,8 +125,8 @@ def test_beam_without_weight_slides_off_under_no_force(path: tuple[float, ...]) 
     assert outcome.multiplier == pytest.approx(0.0, abs=1e-3)
 
 
-def test_height_of_the_drive_counts_from_the_base_and_pushes_to_the_left_are_mirrored() -> None:
-    """Free beam, H at 2.2 m: H 2.2 = (N + W) b / 2; to either side the same curve, to rounding."""
+def test_drive_height_counts_from_base_and_left_push_is_mirrored() -> None:
+    """Free beam, H at 2.2 m: H 2.2 = (N + W) b / 2; the same curve in both directions, to rounding."""
     right, left = (dem_static(under_beam("free", Drive.along((d,), 2.2))) for d in (4e-3, -4e-3))
     check(right, (1e4 + 2 * WEIGHT) / 4.4)
     check(left, (1e4 + 2 * WEIGHT) / 4.4)
@@ -134,9 +134,9 @@ def test_height_of_the_drive_counts_from_the_base_and_pushes_to_the_left_are_mir
     assert left.motion[:, 0] == pytest.approx(-right.motion[:, 0], abs=1e-7)
 
 
-def test_wall_under_a_beam_of_fixed_height_is_a_strut_that_hardens() -> None:
-    """A diagonal strut between two corners, with springs k = K_n b t / 2 and k_t = K_t b t / 2 at either end: thrust H,
-    press N = H h / b, so d = H (2 / k_t + (h/b)² 2 / k). No collapse is reported, but what it takes."""
+def test_wall_under_fixed_height_beam_is_a_hardening_strut() -> None:
+    """A diagonal strut between two corners, with springs k = K_n b t / 2 and k_t = K_t b t / 2 at both ends: thrust H,
+    vertical force N = H h / b, so d = H (2 / k_t + (h/b)² 2 / k). No collapse, but the force reached is reported."""
     outcome = dem_static(under_beam("fixed-height", Drive.along((0.01,), 2.0)))
     assert outcome.status in ("undecided", "unbounded")
     assert outcome.multiplier is outcome.upper is None
@@ -146,8 +146,8 @@ def test_wall_under_a_beam_of_fixed_height_is_a_strut_that_hardens() -> None:
     assert f"{force[-1]:,.0f} at 0.01 m" in outcome.message
 
 
-def test_fixed_height_lets_the_dead_load_settle_the_wall_before_it_holds() -> None:
-    """At rest joints carry N + W and N, and none of it hangs in what holds the beam."""
+def test_beam_height_is_fixed_after_dead_load() -> None:
+    """At rest the joints carry N + W and N, and the restraint of the beam carries nothing."""
     seen: list[tuple[LoadPath, StaticState]] = []
     dem_static(under_beam("fixed-height", PUSHES[1]), observe=lambda *state: seen.append(state))
     system, rest = seen[0][0].system, seen[0][1]
@@ -158,8 +158,8 @@ def test_fixed_height_lets_the_dead_load_settle_the_wall_before_it_holds() -> No
     assert heights == pytest.approx([heights[0]] * len(heights), rel=1e-9)
 
 
-def test_cyclic_drive_of_a_sliding_beam_dissipates_the_area_of_its_loop() -> None:
-    """Rigid-plastic ± μ N on an elastic slope k: from a to −a and back 4 μ N (a − μ N / k), all of it in friction."""
+def test_cyclic_sliding_dissipates_area_of_loop() -> None:
+    """Rigid-plastic ± μ N with elastic slope k: from a to −a and back 4 μ N (a − μ N / k), dissipated by friction."""
     a, most, states = 1e-3, 300.0, []
     seen: list[tuple[LoadPath, StaticState]] = []
     drive = Drive.along((a, -a, a), 2.0)
@@ -183,8 +183,8 @@ def test_cyclic_drive_of_a_sliding_beam_dissipates_the_area_of_its_loop() -> Non
     assert dissipated == pytest.approx(4 * most * (a - most / slope), rel=1e-3)
 
 
-def test_shear_wall_follows_cycles_that_grow_and_its_mirror_does_too() -> None:
-    """A wall of W-like courses under a level beam; the beam slides at μ N both ways."""
+def test_growing_cycles_of_shear_wall_and_of_its_mirror_agree() -> None:
+    """A wall in running bond under a level beam; the beam slides at μ N in both directions."""
     scenes = [
         courses(
             [[0.5, 1, 1, 0.5], [1, 1, 1]] * 4,
@@ -201,8 +201,8 @@ def test_shear_wall_follows_cycles_that_grow_and_its_mirror_does_too() -> None:
     assert other.curve == pytest.approx(one.curve, rel=1e-3, abs=1e-3 * 0.65 * 3e4)
 
 
-def test_low_beam_does_not_say_how_far_a_wall_has_to_fall() -> None:
-    """A beam of 5 cm on blocks of 2 m, and nothing but a beam."""
+def test_low_beam_does_not_set_collapse_displacement() -> None:
+    """A beam of 5 cm on blocks of 2 m, and a beam as the only moving block."""
     scene = wall([rectangle(0, 0, 1, 2)], beam=Beam(0.05, 10.0, "free", drive=Drive((1.0, 0.0))))
     assert scene.lowest_block == 2.0
     assert scene.block_sizes[1] >= 1.0
@@ -219,10 +219,10 @@ def test_low_beam_does_not_say_how_far_a_wall_has_to_fall() -> None:
 PORTAL = [rectangle(0, 0, 0.5, 2), rectangle(2, 0, 0.5, 2), rectangle(0, 2, 2.5, 0.4)]
 
 
-def test_portal_whose_pier_settles_hangs_its_lintel_between_two_edges() -> None:
-    """The right pier sinks: the lintel, W of 1 m², turns about the inner edge of the left pier and bears on the outer
-    one of the right, R 2 = W (1.25 − .5). The right base bears R and its pier's W, of 3 W in all. The lintel turns by
-    s / 2, its left bearing's edge lifts by s / 4."""
+def test_lintel_of_portal_with_settling_pier_rests_on_two_edges() -> None:
+    """The right pier sinks: the lintel, W for 1 m², rotates about the left pier's inner edge and bears on the right
+    pier's outer edge, R 2 = W (1.25 − .5). The right base carries R and its pier's W, out of 3 W. The lintel rotates
+    by s / 2, so the edge of its left bearing lifts by s / 4."""
     outcome = dem_static(wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -0.01))))
     check(outcome, (0.375 + 1) / 3)
     assert outcome.curve[0] == pytest.approx([0.0, 0.5])
@@ -236,10 +236,10 @@ def test_portal_whose_pier_settles_hangs_its_lintel_between_two_edges() -> None:
 
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic])
 @pytest.mark.parametrize(("path", "lever"), [((1.0, -1.0), 0.625), ((-1.0, 0.5, 1.0), 0.375)])
-def test_portal_whose_pier_goes_to_and_fro_ends_as_if_it_had_gone_there_at_once(
+def test_final_state_of_portal_does_not_depend_on_settlement_path(
     model: Callable[[Scene], Outcome], path: tuple[float, ...], lever: float
 ) -> None:
-    """Where the pier rises, the lintel bears on its inner edge and the other's outer one: R 2 = W 1.25."""
+    """If the pier rises, the lintel bears on the pier's inner edge and the other pier's outer one: R 2 = W 1.25."""
     outcome = model(wall(PORTAL, replace(ground_moves(1.8, 3.0, (0.0, -0.01)), path=path)))
     check(outcome, (lever + 1) / 3, rel=1e-6 if model is dem_static else 1e-3)
     assert outcome.curve[:, 0].max() == pytest.approx(0.01 * max(path))
@@ -249,10 +249,10 @@ def test_portal_whose_pier_goes_to_and_fro_ends_as_if_it_had_gone_there_at_once(
 
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic])
 @pytest.mark.parametrize(("by", "path"), [(-1e-6, (-1.0,)), (1e-6, (1.0,))])
-def test_a_pier_that_is_hardly_lifted_takes_up_load_and_bounds_its_mechanism_on_the_side_it_comes_from(
+def test_slightly_lifted_pier_gives_one_sided_bound(
     model: Callable[[Scene], Outcome], by: float, path: tuple[float, ...]
 ) -> None:
-    """Its share goes from a half towards (.625 + 1) / 3, negative against a lift: what it reached is short of that."""
+    """Its share grows from 1/2 towards (.625 + 1) / 3, negative for a lift; the share reached falls short of it."""
     outcome = model(wall(PORTAL, replace(ground_moves(1.8, 3.0, (0.0, by)), path=path)))
     assert outcome.status == "undecided"
     assert "still takes up load" in outcome.message
@@ -263,8 +263,8 @@ def test_a_pier_that_is_hardly_lifted_takes_up_load_and_bounds_its_mechanism_on_
     assert (outcome.lower is None) != (outcome.upper is None)
 
 
-def test_block_over_a_cut_in_its_ground_leans_on_what_stays() -> None:
-    """1 m long, cut at .4 m: pivots there, R (1 − .4) = W (.5 − .4); with the other part R .4 = 0, it bridges it."""
+def test_block_over_sinking_part_of_ground_leans_on_rest() -> None:
+    """1 m long, cut at .4 m: pivots there, R (1 − .4) = W (.5 − .4); if the other part sinks, R .4 = 0: bridged."""
     block = [rectangle(0, 0, 1, 1)]
     check(dem_static(wall(block, ground_moves(0.4, 3.0, (0.0, -0.01)))), 1 / 6)
     gone = dem_static(wall(block, ground_moves(-3.0, 0.4, (0.0, -0.01))))
@@ -280,12 +280,12 @@ def arch(count: int) -> list[Array]:
 
 
 @pytest.mark.parametrize(("sense", "hinges"), [(1.0, ((0.75, 0.0), (1.0, 1.0))), (-1.0, ((1.0, 0.0), (0.75, 0.75)))])
-def test_arch_of_three_blocks_spreads_at_its_least_thrust_and_closes_at_its_largest(
+def test_arch_of_three_blocks_has_minimum_and_maximum_thrust(
     sense: float, hinges: tuple[tuple[float, float], tuple[float, float]]
 ) -> None:
-    """Half the middle block, at a hinge of the joint at 60°, and a side block about its springing's hinge: moments give
-    H. The springing opens at its back and the joint at its belly where it spreads, or the other way round. The reaction
-    against the motion is H, positive where the support gives way."""
+    """H follows from moments of half the middle block, about a hinge of the joint at 60°, and of a side block about the
+    hinge of its springing. Spreading opens the springing's extrados and the joint's intrados; closing does the
+    reverse. The reaction against the motion is H, positive if the support gives way."""
     blocks = arch(3)
     outcome = dem_static(wall(blocks, ground_moves(0.0, 3.0, (sense * 1e-3, 0.0)), friction=2.0))
     foot = np.array([-hinges[0][0], 0.0])
@@ -301,9 +301,9 @@ def test_arch_of_three_blocks_spreads_at_its_least_thrust_and_closes_at_its_larg
     check(outcome, sense * thrust / (2 * side + crown))
 
 
-def test_block_falls_when_what_clamps_it_gives_way() -> None:
-    """A tie presses a block against a wall that moves off by s: W / 2 = μ N on either face at the end, the pressing
-    block's own base resists with μ (W₁ + W / 2), so K s = P − N − that; N is the last the wall bears."""
+def test_clamped_block_falls_when_support_moves_away() -> None:
+    """A tie presses a block against a support that moves away by s: finally W / 2 = μ N on each face, and the pressing
+    block's base resists with μ (W₁ + W / 2), so K s = P − N − that; N is the last force on the support."""
     base = rectangle(-3, -1, 4, 1), rectangle(1.2, -1, 0.8, 3)
     blocks = [rectangle(0, 0, 0.8, 1), rectangle(0.8, 0.3, 0.4, 0.4)]
     preload, stiffness, mu = 6e3, 1e5, 0.6
@@ -319,8 +319,8 @@ def test_block_falls_when_what_clamps_it_gives_way() -> None:
     assert outcome.motion[1] == pytest.approx([0.0, -1.0, 0.0], abs=1e-6)
 
 
-def test_turned_ground_is_led_by_its_largest_joint_end() -> None:
-    """A block on ground that turns about its middle by 1°: it turns along, and its weight does no work."""
+def test_ground_rotation_is_controlled_by_farthest_joint_end() -> None:
+    """A block on ground that rotates about its middle by 1°: the block rotates too, and its weight does no work."""
     moves = Settlement(((-3.0, -9.0), (3.0, 1e-6)), rotation_angle=1.0, about=(0.5, 0.0))
     scene = wall([rectangle(0, 0, 1, 1)], moves)
     outcome = dem_static(scene)
@@ -339,7 +339,7 @@ def mortared(rows: list[list[float]], box: list[list[float]]) -> Scene:
     )
 
 
-def test_half_a_wall_settles_as_its_mirror_does() -> None:
+def test_settlement_of_half_a_wall_and_of_its_mirror_agree() -> None:
     rows: list[list[float]] = [[0.5, 1, 1, 0.5], [1, 1, 1]] * 3
     right, left = (dem_static(mortared(rows, [[x, -9], [x + 9, 0]])) for x in (0.6, -8.4))
     assert right.status == left.status == "collapse"
@@ -348,10 +348,10 @@ def test_half_a_wall_settles_as_its_mirror_does() -> None:
     assert 0 < right.multiplier < 0.5
 
 
-# --- honest answers ------------------------------------------------------------------------------------------
+# --- undecided results and refusals --------------------------------------------------------------------------
 
 
-def test_support_that_has_hardly_moved_has_shed_no_load_for_good() -> None:
+def test_slightly_moved_support_is_undecided() -> None:
     outcome = dem_static(wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -1e-6))))
     assert (outcome.status, outcome.lower) == ("undecided", None)
     assert "still sheds load where its settlement ends" in outcome.message
@@ -360,7 +360,7 @@ def test_support_that_has_hardly_moved_has_shed_no_load_for_good() -> None:
     assert 1.375 / 3 < outcome.curve[-1, 1] < 0.5
 
 
-def test_drive_that_ends_in_the_elastic_wall_has_found_no_capacity() -> None:
+def test_drive_ending_in_elastic_range_is_undecided() -> None:
     outcome = dem_static(under_beam("level", Drive.along((1e-5,), 2.0)))
     assert (outcome.status, outcome.upper) == ("undecided", None)
     assert outcome.lower == pytest.approx(outcome.curve[-1, 1], rel=1e-6)
@@ -369,7 +369,7 @@ def test_drive_that_ends_in_the_elastic_wall_has_found_no_capacity() -> None:
 
 
 @pytest.mark.parametrize("budget", [5, 40])
-def test_budget_that_runs_out_on_the_way_leaves_it_undecided(budget: int) -> None:
+def test_exhausted_budget_is_undecided(budget: int) -> None:
     scene = mortared([[0.5, 1, 1, 0.5], [1, 1, 1]] * 3, [[0.6, -9], [9, 0]])
     outcome = dem_static(scene, budget=budget)
     assert outcome.status == "undecided"
@@ -382,8 +382,8 @@ def test_support_of_a_weightless_wall_is_refused() -> None:
         dem_static(replace(scene, load=replace(scene.load, gravity=(0.0, 0.0))))
 
 
-def test_every_key_is_taken_and_what_is_not_read_is_named() -> None:
-    """Rates of drives and fracture energies change nothing, and the outcome says so."""
+def test_all_keys_are_accepted_and_unused_ones_are_listed() -> None:
+    """Drive rates and fracture energies have no effect, and the outcome lists them."""
     assert MODELS["dem-static"].takes >= {"tie", "beam", "beam.drive.displacement, cyclic", "load.live settlement"}
     drive = Drive.along((1e-3, -1e-3), 2.0, rate=1e-3)
     scene = under_beam("level", drive, friction=0.1).with_joint(
@@ -395,7 +395,7 @@ def test_every_key_is_taken_and_what_is_not_read_is_named() -> None:
 
 
 def test_recorded_supports_move_with_the_wall() -> None:
-    """The load of a frame is the share of the dead load that they bear then, as in the curve."""
+    """The multiplier of a frame is the share of the dead load on the support, as in the curve."""
     scene = wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -0.01)))
     recorder = StaticRecorder(scene, None)
     outcome = run_model("dem-static", scene, observe=recorder)
@@ -405,8 +405,8 @@ def test_recorded_supports_move_with_the_wall() -> None:
 
 
 @pytest.mark.parametrize(("after", "rows"), [(1, 1), (12, 12)])
-def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its states at rest, the dead load's among them."""
+def test_interrupt_keeps_curve_so_far(after: int, rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its states at rest, including the one under dead load."""
     hold, values = LoadPath.hold, list[float]()
 
     def stop(path: LoadPath, start: Array, plastic_slip: Array, control: Control) -> Rest:
@@ -422,8 +422,8 @@ def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int, monkeypatch: pytest
     assert len(outcome.curve) == len(outcome.path) == rows
 
 
-def test_one_run_along_a_settlement_is_no_bracket() -> None:
-    """What it says is an upper end; how far off, steps half as long would say, for which the budget is spent."""
+def test_single_run_along_settlement_is_undecided() -> None:
+    """One run gives an upper bound; its error would follow from steps half as long, but the budget is exhausted."""
     sinks = {"kind": "settlement", "box": [[0.72, -1.0], [3.0, 0.0]], "by": [0.0, -1e-3]}
     springs = {"joint__normal_stiffness": 1e11, "joint__shear_stiffness": 4e10}
     scene = panel(load__live=sinks, **springs)

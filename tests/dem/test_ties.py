@@ -1,4 +1,4 @@
-"""Ties in the static model: their law, their linear systems, and blocks on ties with closed forms."""
+"""Ties in the static model: law, linear systems, and tied blocks with closed-form solutions."""
 
 from collections.abc import Sequence
 
@@ -30,7 +30,7 @@ YOUNG = 2e11
 
 
 def tie(start: tuple[float, float], end: tuple[float, float], stiffness: float, most: float, preload: float = 0) -> Tie:
-    """A tie of some stiffness [N/m] and yield force [N]."""
+    """A tie with a given stiffness [N/m] and yield force [N]."""
     length = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     return Tie(start, end, stiffness * length / YOUNG, YOUNG, most, preload)
 
@@ -54,8 +54,8 @@ def tied(
 PIER, W = rectangle(0, 0, 0.5, 2), 1962.0
 
 
-def test_a_tie_is_elastic_never_pushes_yields_and_remembers_its_slack() -> None:
-    """K = 10, P = 2, Y = 5: by elongation and history, force and history after it, and tangent."""
+def test_tie_law_has_no_compression_yield_and_plastic_elongation() -> None:
+    """K = 10, P = 2, Y = 5: force, new history and tangent as functions of elongation and old history."""
     nothing = np.zeros(0)
     joints = PointLaw(PointStrength(nothing, nothing, nothing), nothing, nothing)
     law = TiedLaw(joints, *np.array([[10.0], [5.0], [2.0]]))
@@ -76,8 +76,8 @@ def test_a_tie_is_elastic_never_pushes_yields_and_remembers_its_slack() -> None:
 
 
 @pytest.mark.parametrize("multiplier", [True, False])
-def test_linear_systems_with_ties_are_those_of_the_whole_matrix(multiplier: bool) -> None:
-    """Between blocks, to the ground and to an anchor; elastic, half as stiff and slack."""
+def test_linear_systems_with_ties_equal_full_matrix(multiplier: bool) -> None:
+    """Ties between blocks, to the ground and to an anchor; elastic, half as stiff and slack."""
     blocks = [PIER, rectangle(2, 0, 0.5, 1), rectangle(2, 1, 0.5, 1)]
     ends = (((0.2, 1.7), (2.3, 1.6)), ((0.3, 1.1), (1.4, -0.1)), ((2.2, 0.4), (4.0, 3.0)), ((0.1, 0.3), (2.4, 0.5)))
     system = static_system(tied(blocks, [tie(*two, 1e8, 1e4) for two in ends], Lateral()))
@@ -96,8 +96,8 @@ def test_linear_systems_with_ties_are_those_of_the_whole_matrix(multiplier: bool
     assert found == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
 
 
-def test_only_the_tie_that_a_loose_block_hangs_on_makes_its_matrix_regular() -> None:
-    """Every joint point has opened: three ties alone hold the block."""
+def test_block_held_by_ties_only_has_regular_matrix() -> None:
+    """All joint points are open: only three ties hold the block."""
     ends = (((0.1, 0.1), (-1.0, -1.5)), ((0.4, 0.2), (3.0, -1.5)), ((0.2, 1.9), (-2.0, 3.0)))
     system = static_system(tied([PIER], [tie(*two, 1e8, 1e4) for two in ends], Lateral()))
     tangent, right = np.zeros_like(system.elastic), np.array([1.0, 2.0, 3.0, 0.0])
@@ -108,21 +108,21 @@ def test_only_the_tie_that_a_loose_block_hangs_on_makes_its_matrix_regular() -> 
 
 
 @pytest.mark.parametrize(("preload", "most"), [(0.0, 1e3), (500.0, 1e3), (1e3, 1e3), (0.0, 3e3)])
-def test_tied_block_topples_when_its_tie_yields(preload: float, most: float) -> None:
-    """λ W h/2 = W b/2 + Y h, whatever the preload."""
+def test_tied_block_topples_when_tie_yields(preload: float, most: float) -> None:
+    """λ W h/2 = W b/2 + Y h, for any preload."""
     outcome = dem_static(tied([PIER], [tie((-3.0, 2.0), (1e-4, 2.0), 7e6, most, preload)], Lateral()))
     assert outcome.lower == pytest.approx(0.25 + 2 * most / W, rel=1e-6)
     assert outcome.upper == pytest.approx(0.25 + 2 * most / W, rel=0.01)
 
 
-def test_tie_on_the_side_of_the_push_goes_slack() -> None:
+def test_tie_in_push_direction_goes_slack() -> None:
     outcome = dem_static(tied([PIER], [tie((3.0, 2.0), (0.4999, 2.0), 7e6, 1e3)], Lateral()))
     assert outcome.lower == pytest.approx(0.25, rel=1e-6)
 
 
 @pytest.mark.parametrize("preload", [0.0, 400.0])
-def test_lifted_block_follows_the_line_of_its_joint_and_then_of_its_tie(preload: float) -> None:
-    """With e the lift above the stress-free joint: λ = W + P + (k_n A + K) e below e = 0 (K = 0 there
+def test_lifted_block_follows_stiffness_of_joint_and_then_of_tie(preload: float) -> None:
+    """With e the uplift from the stress-free joint: λ = W + P + (k_n A + K) e below e = 0 (K = 0 there
     without preload), W + P + K e above, and W + Y at the end; (k_n A + K) e = −W − P at rest."""
     k, most, joint = 3e6, 1e3, 1e10 * 0.05
     pressed = joint + (k if preload else 0.0)
@@ -137,15 +137,15 @@ def test_lifted_block_follows_the_line_of_its_joint_and_then_of_its_tie(preload:
 
 
 @pytest.mark.parametrize(("most", "exact"), [(100.0, W / 8 + 100), (1e6, W / 4)])
-def test_two_piers_that_are_tied_topple_together_or_pull_the_tie_apart(most: float, exact: float) -> None:
-    """A push F away from the other pier at height h: F h = W b/2 + Y h, or both piers' 2 W b/2 if that is less."""
+def test_tied_piers_topple_together_or_tie_yields(most: float, exact: float) -> None:
+    """A push F at height h, away from the other pier: F h = W b/2 + Y h, or both piers' 2 W b/2 if that is less."""
     between = tie((0.25, 2 - 1e-6), (3.25, 2 - 1e-6), 7e6, most)
     push = PointLoad((0.0, 2.0), (-1.0, 0.0))
     outcome = dem_static(tied([PIER, rectangle(3, 0, 0.5, 2)], [between], push))
     assert outcome.lower == pytest.approx(exact, rel=1e-5)
 
 
-def test_mirrored_tie_gives_the_mirrored_answer() -> None:
+def test_mirrored_tie_gives_mirrored_result() -> None:
     def outcome(sign: float) -> tuple[float | None, Array]:
         piers = ((0, 0, 0.5), (3, 0, 1.0), (0, 1, 0.5), (3, 1, 1.0))
         blocks = [rectangle(sign * x - width / 2, y, width, 1) for x, y, width in piers]
@@ -161,8 +161,8 @@ def test_mirrored_tie_gives_the_mirrored_answer() -> None:
     assert mirrored[: len(curve)][rising] == pytest.approx(curve[rising], rel=1e-6)
 
 
-def test_a_tie_that_yielded_is_slack_on_the_way_back_and_taut_again_where_it_left_off() -> None:
-    """A level beam with N slides on its block at ±μ N, and pulls a tie: λ = ±μ N + T(d), T = min(max(K (d − e), 0), Y)
+def test_yielded_tie_is_slack_on_reversal_and_taut_on_reloading() -> None:
+    """A level beam under N slides on its block at ±μ N and pulls a tie: λ = ±μ N + T(d), T = min(max(K (d − e), 0), Y)
     with e = d_max − Y / K after the first push; joints are a thousand times as stiff as the tie."""
     k, most, n = 1e6, 800.0, 2e3
     drive = Drive.along((2e-3, -1e-3, 3e-3), at=1.1)
@@ -175,7 +175,7 @@ def test_a_tie_that_yielded_is_slack_on_the_way_back_and_taut_again_where_it_lef
     state = np.arange(len(d))
     pull = np.clip(k * (d - np.where(state <= first, 0.0, 2e-3 - most / k)), 0, most)
     exact = pull + np.where((state > first) & (state <= back), -0.3 * n, 0.3 * n)
-    sliding = np.abs(d[:, None] - [0.0, 2e-3, -1e-3]).min(axis=1) > 1e-5  # past the joints' elastic ways
+    sliding = np.abs(d[:, None] - [0.0, 2e-3, -1e-3]).min(axis=1) > 1e-5  # beyond the joints' elastic deformation
     assert sliding.sum() > 100
     assert force[sliding] == pytest.approx(exact[sliding], rel=2e-3)
     assert outcome.multiplier == pytest.approx(most + 0.3 * n, rel=1e-6)

@@ -1,4 +1,4 @@
-"""Examples in docstrings give what they show."""
+"""Examples in docstrings give the output that they show."""
 
 import doctest
 import importlib
@@ -13,11 +13,11 @@ MODULES = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in FI
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_docstrings_show_what_happens(name: str) -> None:
+def test_doctests_pass(name: str) -> None:
     failed, tried = doctest.testmod(importlib.import_module(name))
     assert tried
     assert not failed
 
 
-def test_there_are_some() -> None:
+def test_several_modules_have_doctests() -> None:
     assert len(MODULES) >= 5

@@ -1,4 +1,4 @@
-"""Links of the documentation lead somewhere, read as files as well: the site's own are checked when it is built."""
+"""Links between the files of the documentation; the links of the website are checked when it is built."""
 
 import os
 import re
@@ -16,7 +16,7 @@ PAGES = sorted(DOCS.rglob("*.md"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
-def test_links_of_a_page_are_files(page: Path) -> None:
+def test_links_of_a_page_exist(page: Path) -> None:
     for target in re.findall(r"\]\((?!https?:|#)([^)#\s]+)", page.read_text(encoding="utf-8")):
         assert (page.parent / target).exists(), target
 
@@ -29,8 +29,8 @@ def test_every_page_is_in_the_contents() -> None:
 
 
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="what is kept is asked of git")
-def test_a_source_distribution_holds_what_the_readme_links_to_and_the_tests(tmp_path: Path) -> None:
-    """What setuptools takes by itself has neither the changelog nor the pages, and of the tests those at the top."""
+def test_source_distribution_has_the_tests_and_files_linked_in_the_readme(tmp_path: Path) -> None:
+    """By default setuptools includes neither the changelog nor the pages, and only the tests at the top level."""
     tree = tmp_path / "tree"
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
     for name in listed:

@@ -1,4 +1,4 @@
-"""What pages of the reference name is there: building the documentation takes minutes, and no other test does."""
+"""Names in the reference exist; tested here because building the documentation takes minutes."""
 
 import re
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ DIRECTIVE = re.compile(r"^\.\. (currentmodule|auto\w+):: ([\w.]+)", re.MULTILINE
 
 
 def named() -> Iterator[str]:
-    """Full names, in the order of the pages."""
+    """Full names of the documented objects, in the order of the pages."""
     for page in sorted((Path(__file__).parents[2] / "docs").rglob("*.rst")):
         module = ""
         for directive, name in DIRECTIVE.findall(page.read_text(encoding="utf-8")):
@@ -30,7 +30,7 @@ def test_pages_name_something() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_a_page_documents_is_there(name: str) -> None:
+def test_documented_name_exists(name: str) -> None:
     parts = name.split(".")
     for k in range(len(parts), 0, -1):  # a function may have the name of its module
         try:

@@ -1,4 +1,4 @@
-"""The tutorial, done as it says: what its commands print, and its lines of Python."""
+"""The commands of the tutorial print what its page shows, and its Python code runs."""
 
 import re
 from pathlib import Path
@@ -22,14 +22,14 @@ def numbers(text: str) -> list[float]:
 
 
 def words(text: str) -> str:
-    """Words without the digests of arrays, which follow their last bits."""
+    """Words without the digests of arrays, which depend on rounding errors."""
     return " ".join(DIGEST.sub("…", text).split())
 
 
-def test_a_newcomer_sees_what_the_page_shows(
+def test_tutorial_prints_what_the_page_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """To 1 %, for friction remembers the last bit where a path is followed; all other words are the page's."""
+    """Loads to 1 %, because with friction rounding errors may change the path; all other words must agree."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(matplotlib, "rcParams", matplotlib.rcParams.copy())
     matplotlib.use("Agg")

@@ -1,4 +1,4 @@
-"""Draws: each is known by its number, stays within its tolerance and is kept; what is none is refused."""
+"""Random draws of a wall: reproducible by number, within tolerances, stored; invalid options are refused."""
 
 import json
 import signal
@@ -46,12 +46,12 @@ def small(tmp_path: Path) -> str:
     return str(write_toml(content(**changes, **stiffness), tmp_path / "small.toml"))
 
 
-# --- what is drawn ----------------------------------------------------------------------------------------------
+# --- scatter of a wall ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("text", ["bits", "size=0.02", "friction=0.1", "size=0.02,friction=0.1"])
-def test_a_draw_is_known_by_its_number(text: str) -> None:
-    """The first is the wall as it is; others differ from it and from each other, and are the same when drawn again."""
+def test_draw_is_determined_by_its_number(text: str) -> None:
+    """Draw 0 is the unchanged wall; others differ from it and from each other, and are reproducible."""
     scene, scatter = panel(), Scatter.read(text)
     assert str(scatter) == text
     assert scatter.draw(scene, 0) is scene
@@ -63,8 +63,8 @@ def test_a_draw_is_known_by_its_number(text: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["panel-04", "panel-08", "panel-10", "wall-w1", "wall-w3"])
-def test_sizes_lie_within_the_tolerance(name: str) -> None:
-    """Outer sides stay, widths and heights differ within the tolerance, and blocks touch as they did."""
+def test_block_sizes_lie_within_the_tolerance(name: str) -> None:
+    """The outline stays, widths and heights vary within the tolerance, and the joints connect the same blocks."""
     scene, size = published_scene(name), 0.02
     drawn = Scatter(size=size).draw(scene, 5)
     drawn.blocks.check()
@@ -79,8 +79,8 @@ def test_sizes_lie_within_the_tolerance(name: str) -> None:
 
 
 @pytest.mark.parametrize("model", ["limit", "dem-static"])
-def test_a_floor_loads_the_course_that_it_lies_in_whatever_the_sizes(model: str) -> None:
-    """Three blocks in a stack, a floor in the upper joint: the block above it slides first, at tan φ, in every draw."""
+def test_line_load_stays_in_its_bed_joint_for_any_sizes(model: str) -> None:
+    """A stack of three blocks, a floor load in the upper joint: in every draw the top block slides, at tan φ."""
     floor = {"kind": "line", "from": [0.0, 0.4], "to": [0.8, 0.4], "force": [0.0, -2e4]}
     scene = courses([[1]] * 3, 0.8, 0.2, joint__friction=0.3, load__dead=[floor], **STIFF)
     for k in range(6):
@@ -98,8 +98,8 @@ def test_a_floor_loads_the_course_that_it_lies_in_whatever_the_sizes(model: str)
         {"kind": "moment", "at": [0.6, 0.399], "moment": 300.0},
     ],
 )
-def test_loads_stay_on_their_blocks_whatever_the_sizes(load: dict[str, Any]) -> None:
-    """On a step of the wall: as much force, of the same moment about it but for the change of sizes, on each block."""
+def test_loads_stay_on_their_blocks_for_any_sizes(load: dict[str, Any]) -> None:
+    """On a step of the wall: each block keeps its forces and moments, at points within the block."""
     scene = courses([[1, 1], [1, 1], [1], [1]], 0.4, 0.2, load__dead=[load], **STIFF)
     given = scene.dead_forces
     for k in range(1, 8):
@@ -122,23 +122,23 @@ def test_loads_stay_on_their_blocks_whatever_the_sizes(load: dict[str, Any]) -> 
         {"kind": "moment", "at": [0.6, 0.38], "moment": 300.0},
     ],
 )
-def test_displacements_of_draws_are_read_where_those_of_the_wall_are(load: dict[str, Any]) -> None:
-    """On the same blocks, in the same direction, as far from their lower left corners but for the change of sizes."""
+def test_control_point_of_draws_stays_on_its_blocks(load: dict[str, Any]) -> None:
+    """On the same blocks, in the same direction, at the same share of the block's width and height."""
     scene = courses([[1, 1], [1, 1], [1], [1]], 0.4, 0.2, load__live=load, **STIFF)
     block, at, direction = scene.control_point
     low, high = scene.blocks.boxes
     for k in range(1, 8):
         drawn = Scatter(size=0.05).draw(scene, k)
-        there, place, way = drawn.control_point
+        there, place, sense = drawn.control_point
         assert np.array_equal(there, block)
-        assert np.array_equal(way, direction)
+        assert np.array_equal(sense, direction)
         (x0, y0), (x1, y1) = drawn.blocks.boxes[0][block[0]], drawn.blocks.boxes[1][block[0]]
         share = (at - low[block[0]]) / (high - low)[block[0]]
         assert place == pytest.approx([x0 + share[0] * (x1 - x0), y0 + share[1] * (y1 - y0)])
 
 
-def test_pins_and_bars_stay_on_their_blocks_whatever_the_sizes() -> None:
-    """A wall held at the corners of its first course, and two of its blocks tied."""
+def test_pins_and_ties_stay_on_their_blocks_for_any_sizes() -> None:
+    """A wall with pinned corners of its first course, and a tie between two blocks."""
     tie = {"from": [0.2, 0.3], "to": [0.6, 0.3], "area": 1e-4, "young": 2e11, "yield": 4e8}
     scene = courses([[1, 1], [1, 1]], 0.4, 0.2, support__kind="corners", tie=[tie], **STIFF)
     drawn = Scatter(size=0.1).draw(scene, 1)
@@ -149,8 +149,8 @@ def test_pins_and_bars_stay_on_their_blocks_whatever_the_sizes() -> None:
     assert not np.allclose(drawn.ties.ends, scene.ties.ends)
 
 
-def test_pins_stay_at_the_corners_of_a_foot_that_is_narrower_than_its_wall() -> None:
-    """A block under the middle of two others, whose sides move."""
+def test_pins_stay_at_the_corners_of_a_foot_narrower_than_the_wall() -> None:
+    """A block centred under two others; its sides move in the draws."""
     scene = courses([[-0.5, 1, -0.5], [1, 1]], 0.4, 0.2, support__kind="corners", **STIFF)
     for k in range(1, 5):
         drawn = Scatter(size=0.1).draw(scene, k)
@@ -159,8 +159,8 @@ def test_pins_stay_at_the_corners_of_a_foot_that_is_narrower_than_its_wall() -> 
         assert np.unique(drawn.pins.point, axis=0) == pytest.approx(np.array([[left, bottom], [right, bottom]]))
 
 
-def test_an_anchor_stays_where_it_is_though_all_blocks_move() -> None:
-    """One of a wall without a ground, whose last block is any block."""
+def test_anchor_in_space_does_not_move() -> None:
+    """For a wall without ground, whose last block is a block of the wall."""
     tie = {"from": [0.6, 0.3], "to": [0.6, 2.0], "area": 1e-4, "young": 2e11, "yield": 4e8}
     scene = courses([[1, 1]] * 3, 0.4, 0.2, support__kind="fixed-first-course", tie=[tie], **STIFF)
     for k in range(1, 5):
@@ -169,8 +169,8 @@ def test_an_anchor_stays_where_it_is_though_all_blocks_move() -> None:
         assert drawn.ties.ends[0, 0] != pytest.approx(np.array([0.6, 0.3]), abs=1e-6)
 
 
-def test_a_beam_keeps_its_size_though_a_joint_is_in_line_with_its_end() -> None:
-    """It lies on the upper one of two steps."""
+def test_beam_keeps_its_size_if_a_joint_is_in_line_with_its_end() -> None:
+    """The beam lies on the upper of two steps."""
     scene = courses([[1, 1, 1], [1, 1]], 0.4, 0.2, beam={"height": 0.1, "mass": 10.0}, **STIFF)
     assert scene.beam is not None
     assert scene.beam.block is not None
@@ -181,8 +181,8 @@ def test_a_beam_keeps_its_size_though_a_joint_is_in_line_with_its_end() -> None:
         assert not np.array_equal(drawn.blocks.vertices, scene.blocks.vertices)
 
 
-def test_joints_do_not_pass_each_other_where_they_are_near() -> None:
-    """Head joints 1 to 4 mm apart in courses of 0.2 m: blocks touch as they did, at most a tenth as long."""
+def test_close_head_joints_do_not_change_their_order() -> None:
+    """Head joints of adjacent courses 2, 8 and 10 mm apart: the same blocks touch, on at least 9 % of their length."""
     bond: list[list[float]] = [[1, 1], [1.02, 0.98], [1.025, 0.975], [1, 1]]
     scene = courses(bond, **STIFF)
     for k in range(20):
@@ -197,8 +197,8 @@ def test_joints_do_not_pass_each_other_where_they_are_near() -> None:
 
 @settings(max_examples=20)
 @given(noise=st.floats(0.0, 5e-6), seed=st.integers(0, 99))
-def test_blocks_that_touch_to_within_contact_move_together(noise: float, seed: int) -> None:
-    """Corners of a surveyed bond lie micrometres apart: no gap, no overlap is wider after the draw."""
+def test_blocks_within_contact_tolerance_move_together(noise: float, seed: int) -> None:
+    """Corners of a surveyed bond lie micrometres apart; the draw must not widen such gaps and overlaps."""
     scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], **STIFF)
     random = np.random.default_rng(seed)
     per_side = {key: random.uniform(-noise, noise) for key in range(2 * len(scene.blocks))}
@@ -219,8 +219,8 @@ def test_blocks_that_touch_to_within_contact_move_together(noise: float, seed: i
         assert gaps[1] == pytest.approx(gaps[0], abs=1e-9)
 
 
-def test_a_beam_is_no_block_of_the_wall_whose_sizes_differ() -> None:
-    """The top of the masonry stays, and its blocks differ by their tolerance, not by that of a beam of 1 cm."""
+def test_beam_does_not_count_among_the_blocks_that_vary() -> None:
+    """The masonry's top stays; its blocks vary by their own tolerance, not by that of a beam 1 cm high."""
     scene = courses([[1, 1]] * 3, beam={"height": 0.01, "mass": 10.0}, **STIFF)
     heights = []
     for k in range(1, 30):
@@ -231,7 +231,7 @@ def test_a_beam_is_no_block_of_the_wall_whose_sizes_differ() -> None:
     assert np.abs(np.array(heights) - 1).max() == pytest.approx(0.1, abs=0.02)
 
 
-def test_friction_scatters_joint_by_joint() -> None:
+def test_friction_of_joints_scatters_independently() -> None:
     scene, spread = published_scene("panel-12"), 0.1
     drawn = Scatter(friction=spread).draw(scene, 1)
     friction = np.array([material.friction for material in drawn.joint_materials])[drawn.material_of_joint]
@@ -241,8 +241,8 @@ def test_friction_scatters_joint_by_joint() -> None:
     assert logarithm.std() == pytest.approx(spread, abs=4 * error)
 
 
-def test_no_friction_leaves_more_tensile_strength_than_cohesion_has() -> None:
-    """f_t is what was given as long as it is at most c / tan φ, whatever scatters."""
+def test_tensile_strength_is_limited_by_cohesion_over_friction() -> None:
+    """f_t is the given value or, if that is less, c / tan φ of the draw, for every scatter."""
     given = {"friction": 0.6, "cohesion": 1e5, "tensile_strength": 1.6e5}
     scene = panel(wall__length=0.96, wall__height=0.36, joint=given)
     for scatter in ("friction=0.1", "bits"):
@@ -256,8 +256,8 @@ def test_no_friction_leaves_more_tensile_strength_than_cohesion_has() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 1e-6, 1e6])
 @pytest.mark.parametrize("scatter", ["bits", "friction=0.5"])
-def test_walls_of_the_least_and_the_most_friction_have_draws(friction: float, scatter: str) -> None:
-    """A draw is a wall that a file may describe: none of its joints is rougher, or smoother, than any may be."""
+def test_friction_of_draws_stays_within_the_valid_range(friction: float, scatter: str) -> None:
+    """A draw must be a valid wall, even if the mean friction is at the limit of the valid range."""
     scene = panel(wall__length=0.96, wall__height=0.36, joint={"friction": friction})
     for k in range(6):
         drawn = [each.friction for each in Scatter.read(scatter).draw(scene, k).joint_materials]
@@ -265,8 +265,8 @@ def test_walls_of_the_least_and_the_most_friction_have_draws(friction: float, sc
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
-def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
-    """Exact: λ = tan φ of each draw's one joint; and no last bit matters to a single block."""
+def test_block_slides_at_the_friction_of_its_draw(model: str) -> None:
+    """Exact: λ = tan φ of the draw's only joint; changes of the last bit have no effect on a single block."""
     scene, tolerance = block(block__young=1e12), 1e-3
     found = Sampling(scene, MODELS[model], 4, "friction=0.2").run(tolerance, jobs=1)
     for k, outcome in enumerate(found.outcomes):
@@ -282,7 +282,7 @@ def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
     assert bits.multipliers == pytest.approx(0.3, rel=2e-3)
 
 
-# --- what they come to ------------------------------------------------------------------------------------------
+# --- statistics -------------------------------------------------------------------------------------------------
 
 
 def outcome(multiplier: float | None) -> Outcome:
@@ -290,8 +290,8 @@ def outcome(multiplier: float | None) -> Outcome:
     return Outcome("wall", "fem", status, multiplier, multiplier, multiplier)
 
 
-def test_statistics_are_those_of_the_draws_that_collapse() -> None:
-    """Mean 3 and standard deviation √2.5 of 1 … 5; undecided draws are counted, and count for nothing."""
+def test_statistics_include_only_draws_that_collapse() -> None:
+    """Mean 3 and standard deviation √2.5 of 1 … 5; undecided draws are counted but do not enter the statistics."""
     draws = Draws(tuple(map(outcome, (3.0, 1.0, None, 5.0, 2.0, 4.0))), Scatter())
     assert (draws.lowest, draws.mean) == (1.0, 3.0)
     assert draws.error == pytest.approx(np.sqrt(2.5 / 5))
@@ -302,16 +302,16 @@ def test_statistics_are_those_of_the_draws_that_collapse() -> None:
     json.dumps(said, allow_nan=False)
 
 
-def test_draws_that_agree_are_no_better_known_than_each_of_them() -> None:
-    """Bisection ends in one bracket of all: their mean has no scatter, and may be as wrong as each of them."""
+def test_half_width_of_the_bracket_is_reported_beside_the_standard_error() -> None:
+    """If bisection ends in the same bracket for all draws the mean has no scatter but still the error of each draw."""
     same = Draws((Outcome("wall", "fem", "collapse", 0.601, 0.599, 0.603),) * 5 + (outcome(None),), Scatter())
     assert (same.error, same.half_width) == pytest.approx((0.0, 0.002))
     assert str(same).endswith("mean 0.6010 ± 0.0000 (standard error); λ of each is known to ± 0.002")
     assert same.summary()["half_width"] == same.half_width
 
 
-def test_a_wall_as_it_is_is_no_draw_of_a_scatter() -> None:
-    """It is told beside them: here it bears more than any of them, as a wall without a weakest joint does."""
+def test_unchanged_wall_is_reported_apart_from_draws_of_a_scatter() -> None:
+    """Here it carries more than all draws, as is usual for a wall without a weakest joint. It counts for `bits`."""
     walls = tuple(map(outcome, (9.0, 3.0, 1.0, 5.0, 2.0, 4.0)))
     scattered, bits = Draws(walls, Scatter(friction=0.1)), Draws(walls, Scatter())
     assert (scattered.lowest, scattered.mean, bits.mean) == (1.0, 3.0, 4.0)
@@ -326,8 +326,8 @@ def test_a_wall_as_it_is_is_no_draw_of_a_scatter() -> None:
     assert str(weak) == "as it is infeasible; 1 of 1 draws collapse, at 1.0000"
 
 
-def test_draws_of_independent_joints_have_the_quantiles_of_the_weakest() -> None:
-    """Of a stack that slides at its weakest joint: λ is the least of n log-normal frictions, each drawn by itself."""
+def test_quantiles_of_a_stack_are_those_of_the_weakest_joint() -> None:
+    """A stack slides at its weakest joint: λ is the minimum of n independent log-normal frictions."""
     count, spread, number = 10, 0.2, 400
     scene = courses([[1]] * count, joint__friction=0.05, **STIFF)
     least = [
@@ -345,8 +345,8 @@ def test_draws_of_independent_joints_have_the_quantiles_of_the_weakest() -> None
     assert found.quantiles["5"] < found.quantiles["95"] < 0.05
 
 
-def test_walls_that_fall_under_their_weight_or_never_are_ranked_among_the_others() -> None:
-    """Of 0, 0, 0, 1, 2 the median is 0; of 1, 2, ∞, ∞, ∞ it is infinite, and there is no mean."""
+def test_infeasible_and_unbounded_draws_are_ranked_as_zero_and_infinity() -> None:
+    """The median of 0, 0, 0, 1, 2 is 0; that of 1, 2, ∞, ∞, ∞ is infinite, and there is no mean."""
     weak, strong = (
         Draws(tuple(outcome(x) if x else replace(outcome(None), status=status) for x in (1.0, 2.0, 0, 0, 0)), Scatter())
         for status in ("infeasible", "unbounded")
@@ -362,21 +362,21 @@ def test_walls_that_fall_under_their_weight_or_never_are_ranked_among_the_others
     assert (said["collapsed"], said["unbounded"], said["quantiles"]["50"]) == (2, 3, None)
 
 
-def test_a_quantile_between_a_wall_that_falls_and_one_that_never_does_is_infinite() -> None:
-    """Of 1, 2, 3 and ∞ three quarters lie below none."""
+def test_quantile_between_finite_and_unbounded_is_infinite() -> None:
+    """For 1, 2, 3 and ∞ the 75 % quantile would be interpolated between 3 and ∞."""
     walls = (*map(outcome, (1.0, 2.0, 3.0)), replace(outcome(None), status="unbounded"))
     assert Draws(walls, Scatter()).quantiles == pytest.approx(
         {"5": 1.15, "25": 1.75, "50": 2.5, "75": np.inf, "95": np.inf}
     )
 
 
-def test_no_draw_is_known_better_than_the_one_with_the_widest_bracket() -> None:
+def test_half_width_is_that_of_the_widest_bracket() -> None:
     brackets = ((0.59, 0.61), (0.5, 0.7), (0.6, 0.602))
     walls = tuple(Outcome("wall", "fem", "collapse", (a + b) / 2, a, b) for a, b in brackets)
     assert Draws(walls, Scatter()).half_width == pytest.approx(0.1)
 
 
-def test_draws_of_which_none_or_one_collapses_have_no_spread() -> None:
+def test_fewer_than_two_collapses_have_no_standard_error() -> None:
     none, one = (Draws(tuple(map(outcome, found)), Scatter()) for found in ((None, None), (None, 2.0)))
     assert (none.lowest, none.mean, none.error, none.quantiles) == (None, None, None, {})
     assert (one.lowest, one.mean, one.error) == (2.0, 2.0, None)
@@ -384,11 +384,11 @@ def test_draws_of_which_none_or_one_collapses_have_no_spread() -> None:
     assert str(one) == "1 of 2 draws collapse, at 2.0000"
 
 
-# --- kept, gone on with, printed --------------------------------------------------------------------------------
+# --- stored, continued, printed ---------------------------------------------------------------------------------
 
 
-def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """More of them are the old ones and new ones; another scatter's are others. Processes find what one does."""
+def test_stored_draws_are_reused(small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More draws reuse the old ones; another scatter has its own. Parallel runs give the same results."""
     wall, computed = rb.read(small), []
 
     def counted(*arguments: Any) -> Outcome:
@@ -403,13 +403,13 @@ def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: py
     apart = wall.draws("dem-static", 3, jobs=2)
     assert [x.multiplier for x in apart.outcomes] == [x.multiplier for x in three.outcomes]
     wall.draws("dem-static", 3, scatter="friction=0.1", folder=tmp_path / "kept", jobs=1)
-    assert len(computed) == 7  # the first is the same wall
+    assert len(computed) == 7  # draw 0 is the same wall
 
 
-def test_draws_are_pushed_far_in_python_as_on_the_command_line(
+def test_finite_displacements_in_python_and_on_the_command_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The same answers, of which each way has its own: λ of a block that topples, b / h, as it is."""
+    """Both give the same outcomes; each distance, and small displacements, have their own in the folder."""
     path, far = tmp_path / "block.toml", {"displacements": "finite", "distance": 0.004}
     wall = rb.Wall.from_dict(content(wall=TALL, joint__friction=1.4, **STIFF))
     wall.to_toml(path)
@@ -425,8 +425,8 @@ def test_draws_are_pushed_far_in_python_as_on_the_command_line(
         assert reached is None or outcome.curve[-1, 0] == pytest.approx(reached, rel=0.01)
 
 
-def test_walls_that_are_not_pushed_far_have_no_draws_there() -> None:
-    """They are refused before any draw is run."""
+def test_draws_with_finite_displacements_refuse_settlements() -> None:
+    """Before any draw is run."""
     live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}
     wall = rb.Wall.from_dict(content(wall=TALL, **STIFF, load__live=live))
     with pytest.raises(SceneError, match="^distance = 0.1: goes with finite displacements of a wall that its live"):
@@ -434,10 +434,10 @@ def test_walls_that_are_not_pushed_far_have_no_draws_there() -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_what_an_interruption_cuts_short_is_no_draw(
+def test_interrupted_run_is_not_stored_as_a_draw(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
 ) -> None:
-    """A model ends with what it has, in this very process; that is kept under no draw, and no other is begun."""
+    """The interrupted model returns what it has; that is not stored, and no further draw is started."""
     begun = []
 
     def cut_short(*_: Any) -> Outcome:
@@ -449,7 +449,7 @@ def test_what_an_interruption_cuts_short_is_no_draw(
 
     monkeypatch.setattr(tasks, "run_model", cut_short)
     sampling = Sampling(block(), MODELS["dem-static"], 5)
-    before = signal.signal(number, signal.default_int_handler)  # which a process begun in the background has not
+    before = signal.signal(number, signal.default_int_handler)  # background processes do not have this handler
     try:
         with pytest.raises(Interrupted) as stopped:
             sampling.run(folder=tmp_path, jobs=1)
@@ -461,7 +461,7 @@ def test_what_an_interruption_cuts_short_is_no_draw(
     assert len(begun) == 6
 
 
-def test_ctrl_c_reaches_a_script(small: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_keyboard_interrupt_is_raised_in_scripts(small: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt
 
@@ -470,8 +470,10 @@ def test_ctrl_c_reaches_a_script(small: str, monkeypatch: pytest.MonkeyPatch) ->
         rb.read(small).draws("dem-static", 2, jobs=1)
 
 
-def test_one_run_is_among_the_draws(small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The object of one run, with one key more; and what one run leaves in its folder."""
+def test_output_of_draws_includes_that_of_one_run(
+    small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The JSON object of one run with one more key, and the files of one run in the folder."""
     line = ["run", small, "--model", "dem-static", "--json"]
     assert command(line) == 0
     once = json.loads(capsys.readouterr().out)
@@ -501,10 +503,8 @@ def test_one_run_is_among_the_draws(small: str, tmp_path: Path, capsys: pytest.C
         (("undecided", "failed"), 3),
     ],
 )
-def test_draws_end_without_an_answer_where_each_of_them_does(
-    statuses: tuple[Any, ...], code: int, small: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As one run does: that a wall falls under its weight, or locks, is an answer."""
+def test_exit_code_of_draws(statuses: tuple[Any, ...], code: int, small: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Code 3 only if no draw has a result; ``infeasible`` and ``unbounded`` are results, as for a single run."""
     draws = (outcome(1.0) if each == "collapse" else replace(outcome(None), status=each) for each in statuses)
     found = Draws(tuple(draws), Scatter())
     monkeypatch.setattr(Sampling, "run", lambda *_: found)
@@ -530,7 +530,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("option", "value", "others"), WRONG)
-def test_what_is_no_draw_is_refused(
+def test_invalid_options_of_draws_are_refused(
     option: str, value: str, others: list[str], small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
@@ -549,23 +549,23 @@ def test_models_without_a_path_have_no_draws(model: str, small: str, capsys: pyt
     assert f"--draws = 2: is for models that follow a path, which {model} does not" in capsys.readouterr().err
 
 
-def test_misspelt_scatter_is_understood() -> None:
+def test_misspelt_scatter_gets_a_suggestion() -> None:
     with pytest.raises(SceneError, match='did you mean "friction"'):
         Scatter.read("frction=0.1")
 
 
-def test_blocks_of_an_arch_keep_their_sizes(capsys: pytest.CaptureFixture[str]) -> None:
+def test_size_scatter_is_refused_for_arches(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["run", ARCH, "--model", "dem-dynamic", "--draws", "2", "--scatter", "size=0.01"]) == 2
     assert "size is taken by walls of level and upright joints alone" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("draws", [2.0, True, None, "3"])
-def test_a_number_of_draws_is_whole_in_python_too(draws: Any) -> None:
+def test_number_of_draws_must_be_an_integer(draws: Any) -> None:
     with pytest.raises(SceneError, match="^number"):
         Sampling(block(), MODELS["dem-static"], draws)
 
 
-def test_refusals_in_python_name_no_option_of_the_command_line() -> None:
+def test_messages_in_python_name_the_parameters() -> None:
     wall = rb.Wall.running_bond(
         length=0.8, height=0.4, block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.6
     )
@@ -579,10 +579,10 @@ def test_refusals_in_python_name_no_option_of_the_command_line() -> None:
 
 
 @pytest.mark.parametrize("reader", [block_compliance, ContactMaterials])
-def test_joints_with_a_friction_each_are_not_compared_each_with_each(
+def test_joint_materials_are_not_compared_pairwise(
     reader: Callable[[Scene], object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of 9000 joints that took three quarters of a minute each time, and a run asks twice or more."""
+    """With a friction for each of 9000 joints that took 45 s each time, and a run needs it at least twice."""
     scene = Scatter.read("friction=0.05").draw(panel(block__young=5e9, **STIFF), 1)
     same, comparisons = JointMaterial.__eq__, 0
 

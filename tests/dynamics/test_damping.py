@@ -1,4 +1,4 @@
-"""Local and combined damping: what vibrates, what drifts, and a load that is held for long."""
+"""Local and combined damping: vibration, drift, and a load that is held for many steps."""
 
 import math
 from dataclasses import replace
@@ -25,18 +25,18 @@ def _run(damping: Damping, stiffness: float = 1.0, dt: float = 0.01) -> Run:
 
 
 @pytest.mark.parametrize(("damping", "share"), [("local", 1 - LOCAL), ("combined", 1.0)])
-def test_what_drifts_under_a_constant_force_is_dragged_by_local_damping_alone(damping: Damping, share: float) -> None:
+def test_drift_under_constant_force_is_damped_by_local_damping_only(damping: Damping, share: float) -> None:
     run, steps = _run(damping, stiffness=0.0), 1000
     state = State.at_rest(run.system)
     run.bear(state, np.ones(1), steps)
     # The first step starts from rest, where there is no velocity to resist.
     assert state.velocity[0] == pytest.approx((1 + (steps - 1) * share) * run.dt, rel=1e-9)
-    way = state.motion[0] - run.dt * (run.dt + state.velocity[0]) / 2  # by the trapezoidal rule, from the first step on
+    way = state.motion[0] - run.dt * (run.dt + state.velocity[0]) / 2  # trapezoidal rule, from the first step on
     assert state.damped[0] == pytest.approx((1 - share) * way, rel=1e-9)
 
 
-def test_both_damp_a_vibration_alike() -> None:
-    """The force of a spring changes against the velocity at all times; α makes each half swing 1 − α over 1 + α."""
+def test_local_and_combined_damping_reduce_vibration_equally() -> None:
+    """The spring force always changes against the velocity; α scales each half swing's energy by (1 − α) / (1 + α)."""
     swings = {}
     for damping in ("local", "combined"):
         run = _run(damping, dt=1e-4)
@@ -53,7 +53,7 @@ def test_both_damp_a_vibration_alike() -> None:
 
 
 @pytest.mark.parametrize(("part", "grows"), [(0.98, False), (1.05, True)])
-def test_combined_damping_narrows_the_step_as_local_damping_does(part: float, grows: bool) -> None:
+def test_combined_damping_has_same_stability_limit_as_local(part: float, grows: bool) -> None:
     run = _run("combined", dt=part * 2 / math.sqrt(1 + LOCAL))
     state = State.at_rest(run.system)
     state.motion[0] = 1e-3
@@ -62,10 +62,10 @@ def test_combined_damping_narrows_the_step_as_local_damping_does(part: float, gr
 
 
 @pytest.mark.parametrize(("unit", "verdict"), [(0.4, "collapse"), (0.5, "undecided")])
-def test_a_load_that_is_held_for_long_no_longer_drags(unit: float, verdict: str) -> None:
-    """A mass that a unit force pushes comes .25 T² far in T under local damping, .44 T² with the last 7/8 of T free.
+def test_load_held_long_is_no_longer_locally_damped(unit: float, verdict: str) -> None:
+    """A mass under a unit force moves .25 T² in T under local damping, and .44 T² if the last 7/8 of T are undamped.
 
-    It is in collapse at a unit, as it has no weight; that of .4 T² is a fall that local damping leaves undecided.
+    Collapse is a displacement of `unit` T², as the mass has no weight; local damping alone would leave .4 T² undecided.
     """
     steps = 8000
     run = _run("local", stiffness=0.0)
@@ -81,23 +81,23 @@ def test_a_load_that_is_held_for_long_no_longer_drags(unit: float, verdict: str)
 
 
 @pytest.mark.parametrize("local", [0.5, MOVING, 0.1])
-def test_what_is_held_for_long_is_damped_no_more_than_what_moves_far(local: float) -> None:
-    """Combined damping of α makes each half swing √((1 − α) / (1 + α)), and drags on what drifts and shakes."""
+def test_load_held_long_is_damped_at_most_as_large_motion(local: float) -> None:
+    """Combined damping of α scales each half swing by √((1 − α) / (1 + α)); it also brakes a drift with vibration."""
     run = Run(replace(oscillator(), stiffness=np.ones(1)), local=local, viscous=0.0, dt=1e-4).drifting
     state = State.at_rest(run.system)
     state.motion[0] = 1.0
     least = min(local, MOVING)
-    # Out of stretch the spring pulls with 1 − α of its force, and into stretch it resists with 1 + α of it.
+    # Towards its natural length the spring pulls with 1 − α of its force; away from it, it resists with 1 + α of it.
     half_swing = math.pi / 2 * (1 / math.sqrt(1 - least) + 1 / math.sqrt(1 + least))
     run.hold(state, 0.0, round(half_swing / run.dt))
     assert state.motion[0] == pytest.approx(-math.sqrt((1 - least) / (1 + least)), rel=1e-3)
 
 
 @pytest.mark.parametrize("friction", [0.39, *at_length(0.4)])
-def test_an_arch_that_speeds_up_is_not_braked(friction: float) -> None:
-    """Twelve voussoirs pushed sideways, whose fall half a per cent above the limit takes more than 50 000 steps.
+def test_accelerating_arch_collapses_despite_damping(friction: float) -> None:
+    """Twelve voussoirs under lateral load, whose collapse 0.5 % above the limit load takes more than 50 000 steps.
 
-    Damping that resists a drift while it shakes took half of its speed away, and it was undecided.
+    Damping that resists drift with superposed vibration halved the speed, and the result was undecided.
     """
     angle = np.pi * (1 - np.arange(13) / 12)
     ray = np.column_stack([np.cos(angle), np.sin(angle)])

@@ -22,7 +22,7 @@ MODELS = (dem_dynamic, fem)
 
 
 def block(gravity: tuple[float, float], height: float = HEIGHT, tie: Any = (), **joint: float) -> Scene:
-    """A block as wide as 0.2 m that its weight [m/s²] and its live load draw the same way."""
+    """A block 0.2 m wide whose weight [m/s²] and live load act in the same direction."""
     size = {"block_width": 0.2, "block_height": height, "thickness": 0.1, "courses": [[1]]}
     live = {"kind": "body", "acceleration": list(gravity)}
     tables: dict[str, Any] = {
@@ -43,7 +43,7 @@ def hanging(share: float) -> Scene:
 
 
 def pulled(share: float) -> Scene:
-    """The weight and a long soft bar, which pulls with three times as much, take a share of the strength."""
+    """The weight and a long soft bar, which pulls with three times the weight, use up a share of the strength."""
     strength, weight = 4 * STRESS / share, STRESS * 0.2 * 0.1
     energies = {"fracture_energy_1": 1e-3, "fracture_energy_2": 1e-3}
     size = {"area": 1e-6, "young": 1e5, "yield": 10 * weight, "preload": 3 * weight}
@@ -52,7 +52,7 @@ def pulled(share: float) -> Scene:
 
 
 def sheared(share: float) -> Scene:
-    """Weight along the joint, as in a wall laid on its side: the edge tears before all of the joint slides."""
+    """Weight along the joint, as in a wall laid on its side: the joint tears from its edge before all of it slides."""
     strength = STRESS / share
     energies = {"fracture_energy_1": 1e-4, "fracture_energy_2": 1e-4}
     return block((GRAVITY, 0.0), 0.02, cohesion=strength, tensile_strength=strength, **energies)
@@ -73,23 +73,23 @@ def is_bracketed(outcome: Outcome, exact: float) -> bool:
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("wall", [hanging, crushed])
 @pytest.mark.parametrize("share", [0.6, 0.8, 0.96, 0.97, 0.98, 0.985, 0.99])
-def test_what_the_weight_leaves_of_a_strength_is_borne(model: Any, wall: Any, share: float) -> None:
-    """A joint that bears its dead load at a share of its strength bears λ = 1 / share − 1 times as much more."""
+def test_limit_load_is_strength_left_by_weight(model: Any, wall: Any, share: float) -> None:
+    """A joint whose dead load takes a share of its strength fails at λ = 1 / share − 1."""
     assert is_bracketed(model(wall(share)), 1 / share - 1)
 
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("share", [0.6, 0.9, 0.97])
-def test_what_a_preload_and_the_weight_leave_of_a_strength_is_borne(model: Any, share: float) -> None:
-    """Put on at once, a bar's preload tears a joint off at half of what it bears."""
+def test_limit_load_is_strength_left_by_preload_and_weight(model: Any, share: float) -> None:
+    """Applied suddenly, a bar's preload tears off a joint at half of its strength."""
     assert is_bracketed(model(pulled(share)), 4 * (1 / share - 1))
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
-def test_a_preload_draws_a_block_no_farther_than_friction_lets_it(model: Any) -> None:
-    """A bar of thrice what friction bears draws a block until it pulls as much as that: put on at once it went slack.
+def test_preload_slides_block_until_tie_force_equals_friction(model: Any) -> None:
+    """A bar with a preload of three times the friction pulls the block until its force equals the friction.
 
-    Models in motion tighten it in 200 turns, and know that pull to two of them.
+    Applied suddenly, the bar went slack. Dynamic models tighten it in 200 increments and know its force to two of them.
     """
     size = {"width": 0.2, "height": 0.05, "wall__thickness": 0.1, "block__density": DENSITY, "block__young": 1e12}
     slides = 0.6 * 0.2 * 0.05 * 0.1 * DENSITY * GRAVITY
@@ -103,8 +103,8 @@ def test_a_preload_draws_a_block_no_farther_than_friction_lets_it(model: Any) ->
     assert path["ground horizontal [N]"][0] == pytest.approx(-path["tie 0 [N]"][0], rel=1e-3)
 
 
-def test_what_preloads_give_is_work_that_the_ledger_is_measured_by() -> None:
-    """A bar that pulls a block off its base against nearly all of the live load does nearly all the work there is."""
+def test_energy_balance_is_relative_to_work_of_preloads_too() -> None:
+    """A bar that pulls a block off its base against most of the live load does nearly all of the external work."""
     strength, weight = 1e5, STRESS * 0.2 * 0.1
     size = {"area": 1e-6, "young": 1e5, "yield": 1e4, "preload": 15 * weight}
     bar = {"from": [0.1, 0.1], "to": [0.1, 10.0], **size}
@@ -115,15 +115,15 @@ def test_what_preloads_give_is_work_that_the_ledger_is_measured_by() -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("wall", [hanging, crushed])
-def test_a_weight_beyond_the_strength_is_not_borne(model: Any, wall: Any) -> None:
+def test_weight_beyond_strength_is_infeasible(model: Any, wall: Any) -> None:
     assert model(wall(1.02)).status == "infeasible"
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_how_the_dead_load_came_on_is_no_work_that_a_fall_misses(model: Any) -> None:
-    """A thrust leaves a block a thousandth of b / h, where works nearly cancel; one slides without friction.
+def test_dead_load_application_does_not_spoil_energy_balance_of_collapse(model: Any) -> None:
+    """A thrust leaves a limit load of b / h / 1000, where the works nearly cancel; another block has no friction.
 
-    Of what the weight did as it came on, a tenth is not accounted for: that was 3 % of all works, or 5 %.
+    A tenth of the work during dead loading is not accounted for, which made 3 % or 5 % of the sum of all works.
     """
     load = {"gravity": GRAVITY, "live": {"kind": "lateral"}}
     stiff = {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "friction": 0.6}
@@ -134,7 +134,7 @@ def test_how_the_dead_load_came_on_is_no_work_that_a_fall_misses(model: Any) -> 
     for outcome, exact in ((pushed, 0.4 * 0.001), (smooth, 0.0)):
         assert outcome.status == "collapse", outcome.message
         assert "unaccounted" not in outcome.message
-        assert outcome.lower == pytest.approx(exact, abs=1e-5)  # forces that are not seen at rest
+        assert outcome.lower == pytest.approx(exact, abs=1e-5)  # residual forces below the criterion of rest
         assert exact < outcome.upper <= exact + 1.2e-4
 
 
@@ -155,12 +155,10 @@ LOADS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("further", [{}, {"fracture_energy_1": 10.0}, {"compressive_strength": 1e9}])
 @pytest.mark.parametrize("load", LOADS)
 @pytest.mark.parametrize("model", MODELS)
-def test_a_fall_of_joints_that_keep_their_strength_does_not_prove_that_nothing_bears_the_weight(
-    model: Any, load: str, further: Any
-) -> None:
-    """A block between two cantilevers, which forces balance that nothing brings about, whatever else is to come.
+def test_dead_load_collapse_is_undecided_if_equilibrium_exists(model: Any, load: str, further: Any) -> None:
+    """A block between two cantilevers: equilibrium forces exist, but the loading does not bring them about.
 
-    A fracture energy of dry joints, and a strength that no pressure comes near, do not make this another wall.
+    A fracture energy of dry joints, or a compressive strength far above all stresses, does not change the result.
     """
     joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, **further}
     scene = courses(CANTILEVERS, 0.5, 0.2, joint=joint, block__young=1e12, **LOADS[load])
@@ -177,8 +175,8 @@ def test_a_fall_of_joints_that_keep_their_strength_does_not_prove_that_nothing_b
         *[({"friction": 0.0}, "infeasible"), ({"compressive_strength": 1e3}, "infeasible")],
     ],
 )
-def test_neither_does_a_fall_before_the_ground_moves(joint: dict[str, float], verdict: str) -> None:
-    """Without friction no forces balance the block in the middle, nor do any that joints bear which crush under it."""
+def test_dead_load_collapse_before_shaking_is_undecided_too(joint: dict[str, float], verdict: str) -> None:
+    """Infeasible if nothing can hold the middle block: without friction, or if the joints crush under the weight."""
     pulse = {"pulse": {"kind": "sine", "amplitude": 0.2, "period": 0.3}, "quantity": "g"}
     joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, **joint}
     scene = courses(CANTILEVERS, 0.5, 0.2, joint=joint, load={"gravity": GRAVITY, "history": pulse})
@@ -189,8 +187,8 @@ def test_neither_does_a_fall_before_the_ground_moves(joint: dict[str, float], ve
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_weight_and_live_load_count_alike(model: Any) -> None:
-    """A joint that tears from its edge on bears one load in all, however much of it is weight, to the brackets."""
+def test_total_load_does_not_depend_on_share_of_dead_load(model: Any) -> None:
+    """A joint that tears from its edge carries the same total load for any share of weight, within the brackets."""
     first, *more = (
         [(1 + bound) * share for bound in (outcome.lower, outcome.upper)]
         for share in (0.3, 0.6, 0.8)
@@ -202,7 +200,7 @@ def test_weight_and_live_load_count_alike(model: Any) -> None:
 
 
 def held(courses: list[list[float]], pressed: float, height: float = 0.2, **joint: float) -> Scene:
-    """Dry blocks on two pins, under a beam that is pushed once it is held at its height."""
+    """Dry blocks on two pins, under a beam that is pushed after its height has been fixed."""
     tables: dict[str, Any] = {
         "wall": {"block_width": 0.4, "block_height": height, "thickness": 0.2, "courses": courses},
         "block": {"density": 1800.0, "young": 1e14, "poisson": 0.2},
@@ -223,12 +221,10 @@ ARCH: list[list[float]] = [[1, -1, 1], [0.5, 0.5, -1, 0.5, 0.5], [3]]
 
 
 @pytest.mark.parametrize(("courses", "pressed", "friction"), [([[1, 1]], 1e3, 0.6), *at_length((ARCH, 1.27e4, 0.3))])
-def test_a_beam_held_at_its_height_keeps_the_thrust_of_a_load_that_came_slowly(
-    courses: Any, pressed: float, friction: float
-) -> None:
-    """That of `dem-static`, and so its strength: put on at once, it slid joints back that bore the overshoot.
+def test_fixed_height_beam_keeps_thrust_of_slow_dead_load(courses: Any, pressed: float, friction: float) -> None:
+    """Thrust and strength agree with `dem-static`; a suddenly applied load slid joints back because of its overshoot.
 
-    With the same joint points. In the arch the thrust was a third too small, and the strength a fifth too large.
+    All models use the same joint points. In the arch the thrust was a third too small, the strength a fifth too large.
     """
     scene = held(courses, pressed, friction=friction)
     exact = dem_static(scene)
@@ -239,10 +235,10 @@ def test_a_beam_held_at_its_height_keeps_the_thrust_of_a_load_that_came_slowly(
 
 
 @pytest.mark.parametrize(("points", "lever"), [(2, 1.0), (3, 2 / 3), *at_length((9, 2 / 3))])
-def test_a_strut_under_a_beam_held_at_its_height_locks_by_where_its_joint_bears(points: int, lever: float) -> None:
-    """A block that turns about its pin presses evenly less on its top from one end on, in the mean at 2/3 of its width.
+def test_strut_under_fixed_height_beam_locks_by_centre_of_pressure(points: int, lever: float) -> None:
+    """Under a block rotating about its pin, pressure on top varies linearly from one end: its centre is at 2/3 width.
 
-    The strut from there to the pin locks once friction is its slope. Of two points the far one bears all of it.
+    The strut from there to the pin locks if friction exceeds its slope. With two points the far one carries everything.
     """
     for friction, status in ((0.95 * lever, "collapse"), (1.05 * lever, "unbounded")):
         scene = held([[1, 1], [2]], 1e4, friction=friction, height=0.4)
@@ -250,9 +246,9 @@ def test_a_strut_under_a_beam_held_at_its_height_locks_by_where_its_joint_bears(
 
 
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
-def test_models_say_under_a_beam_held_at_its_height_that_joints_bear_at_a_few_points(model: Any) -> None:
-    """In `fem` where a block lies on two as well: its joints are in parts, and each of them has its ends alone."""
-    note = "alone, and slide under a beam held at its height"
+def test_note_on_few_joint_points_under_fixed_height_beam(model: Any) -> None:
+    """In `fem` also if a block lies on two blocks: its joints are split, and each part has only its two ends."""
+    note = "and slide under a beam held at its height"
     patterns: tuple[list[list[float]], ...] = ([[1, 1], [2]], [[1], [1]])
     for pattern in patterns:
         assert note in model(held(pattern, 1e4)).message
@@ -260,8 +256,8 @@ def test_models_say_under_a_beam_held_at_its_height_that_joints_bear_at_a_few_po
             assert note not in model(held(pattern, 1e4, compressive_strength=1e9)).message
 
 
-def test_the_ledger_has_a_preload_that_grows_do_all_of_its_work() -> None:
-    """What it does not do, for it came slowly, is as good as damped; an elastic bar ends unstretched."""
+def test_energy_balance_closes_for_gradual_preload() -> None:
+    """The work that a slow preload does not do counts as damped; an elastic bar ends without plastic elongation."""
     scene = pulled(0.9)
     run = quasi_static_run(scene)
     state = put_on_dead_load(run, Criteria(collapse=0.05 * scene.block_size)).state
@@ -271,8 +267,8 @@ def test_the_ledger_has_a_preload_that_grows_do_all_of_its_work() -> None:
     assert run.unaccounted(state) < 1e-3
 
 
-def test_a_load_that_grows_does_half_of_its_work() -> None:
-    """On springs, and a quarter that comes at once a sixteenth of all; the ledger closes."""
+def test_gradual_dead_load_on_springs_does_half_of_its_work() -> None:
+    """The quarter that is applied at once does 1/16 of the work of a sudden load; the energy balance closes."""
     scene = hanging(0.9)
     run = quasi_static_run(scene)
     state = put_on_dead_load(run, Criteria(collapse=0.05 * scene.block_size)).state
@@ -283,8 +279,8 @@ def test_a_load_that_grows_does_half_of_its_work() -> None:
 
 
 @pytest.mark.parametrize("share", [0.9, 0.95])
-def test_a_brittle_block_near_its_strength_stands_on_ground_that_hardly_moves(share: float) -> None:
-    """Pressed by shares of its strength, evenly: what grows too fast overshoots, and does not come back."""
+def test_brittle_block_near_its_strength_stands_on_weakly_moving_ground(share: float) -> None:
+    """Uniform compression at a share of the strength: a load that grows too fast overshoots and crushes for good."""
     stress = DENSITY * GRAVITY * 1.0
     wall = {"block_width": 0.5, "block_height": 1.0, "thickness": 0.3, "courses": [[1]]}
     joint = {"friction": 0.7, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
@@ -299,10 +295,8 @@ def test_a_brittle_block_near_its_strength_stands_on_ground_that_hardly_moves(sh
 
 @pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 @pytest.mark.parametrize(("leans", "strength"), [(-0.8, 1.2e4), (-0.7, 8e3)])
-def test_a_slender_pier_that_sways_as_its_dead_load_is_put_on_does_not_fall(
-    model: Any, leans: float, strength: float
-) -> None:
-    """Put on at once the load moves its top by twice what it does in the end, and that was taken for a fall."""
+def test_swaying_of_slender_pier_under_dead_load_is_not_collapse(model: Any, leans: float, strength: float) -> None:
+    """A suddenly applied load moves the top by twice its final displacement, which was taken for collapse."""
     foot, pier = [[1, 1, 1], [0.5, 1, 1, 0.5]], [[-1, 0.5, 0.5, -1], [-1, 1, -1]]
     size = {"block_width": 0.25, "block_height": 0.5, "thickness": 0.2}
     scene = scene_from_dict(

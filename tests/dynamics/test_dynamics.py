@@ -1,4 +1,4 @@
-"""Blocks in motion against exact solutions."""
+"""Explicit dynamics of blocks against exact solutions."""
 
 import math
 from dataclasses import replace
@@ -41,8 +41,8 @@ STIFF = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 GRAVITY = 9.81
 
 
-class Nothing(NamedTuple):
-    """Geometry of no joints."""
+class NoGeometry(NamedTuple):
+    """Geometry without joints."""
 
     nothing: Array
 
@@ -71,7 +71,7 @@ def oscillator(stiffness: float = 1.0, viscosity: float = 0.0) -> BlockSystem:
         rigid=np.zeros((1, 3), dtype=np.int64),
         owner=np.zeros(1, dtype=np.int64),
         restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
-        interface=Interface(law, np.zeros(0), _no_jumps, _no_forces, Nothing(np.zeros(0)), stiffness),
+        interface=Interface(law, np.zeros(0), _no_jumps, _no_forces, NoGeometry(np.zeros(0)), stiffness),
     )
 
 
@@ -86,7 +86,7 @@ def block_on_base(width: float, height: float, friction: float, mass: float = 1.
 
 
 @pytest.mark.parametrize("omega_dt", [0.1, 0.9, 1.5, 1.99])
-def test_free_oscillation_is_the_cosine_of_central_differences(omega_dt: float) -> None:
+def test_free_oscillation_follows_central_difference_cosine(omega_dt: float) -> None:
     """u_n = cos(n θ) with sin(θ/2) = ω Δt / 2, to rounding, for 300 steps."""
     run = Run(oscillator(), local=0.0, viscous=0.0, dt=omega_dt)
     theta = 2 * math.asin(omega_dt / 2)
@@ -99,7 +99,7 @@ def test_free_oscillation_is_the_cosine_of_central_differences(omega_dt: float) 
 
 
 @pytest.mark.parametrize(("omega_dt", "growth"), [(2.1, 1.877328), (2.01, 1.221301)])
-def test_beyond_the_limit_it_grows_at_the_known_rate(omega_dt: float, growth: float) -> None:
+def test_oscillation_beyond_stability_limit_grows_at_known_rate(omega_dt: float, growth: float) -> None:
     run = Run(oscillator(), local=0.0, viscous=0.0, dt=omega_dt)
     state = State.at_rest(run.system)
     state.motion[0] = 1.0
@@ -117,14 +117,14 @@ def _grows(run: Run) -> bool:
 
 
 @pytest.mark.parametrize("local", [0.2, 0.5, 0.8])
-def test_local_damping_narrows_the_step_by_the_root_of_one_plus_alpha(local: float) -> None:
+def test_local_damping_reduces_stable_step_by_root_of_one_plus_alpha(local: float) -> None:
     edge = 2 / math.sqrt(1 + local)
     assert not _grows(Run(oscillator(), local=local, viscous=0.0, dt=0.999 * edge))
     assert _grows(Run(oscillator(), local=local, viscous=0.0, dt=1.001 * edge))
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.3, 1.0])
-def test_lagged_viscous_damping_narrows_the_step(ratio: float) -> None:
+def test_lagged_viscous_damping_reduces_stable_step(ratio: float) -> None:
     """(ω Δt)_cr = 2 (√(1 + ξ²) − ξ)."""
     edge = 2 * (math.sqrt(1 + ratio**2) - ratio)
     assert not _grows(Run(oscillator(viscosity=2 * ratio), local=0.0, viscous=0.0, dt=0.999 * edge))
@@ -133,8 +133,8 @@ def test_lagged_viscous_damping_narrows_the_step(ratio: float) -> None:
 
 @pytest.mark.parametrize("local", [0.2, 0.5, 0.8])
 @pytest.mark.parametrize("ratio", [0.1, 0.3])
-def test_local_damping_enlarges_the_lagged_viscous_force_too(local: float, ratio: float) -> None:
-    """Together they narrow the step by more than by the product of what each does alone."""
+def test_local_and_viscous_damping_together_reduce_stable_step_further(local: float, ratio: float) -> None:
+    """Together they reduce the stable step by more than the product of their separate reductions."""
     edge = stable_step(1.0, ratio, local) / 0.9
     assert edge < 2 * (math.sqrt(1 + ratio**2) - ratio) / math.sqrt(1 + local)
     assert not _grows(Run(oscillator(viscosity=2 * ratio), local=local, viscous=0.0, dt=0.999 * edge))
@@ -143,19 +143,19 @@ def test_local_damping_enlarges_the_lagged_viscous_force_too(local: float, ratio
 
 @pytest.mark.parametrize("local", [0.5, 0.95])
 @pytest.mark.parametrize("ratio", [1.0, 3.0])
-def test_the_stable_step_is_safe_under_heavy_damping(local: float, ratio: float) -> None:
+def test_stable_step_is_safe_under_heavy_damping(local: float, ratio: float) -> None:
     dt = stable_step(1.0, ratio, local)
     assert not _grows(Run(oscillator(viscosity=2 * ratio), local=local, viscous=0.0, dt=dt))
 
 
-def test_stable_step_stays_a_tenth_inside_both_limits() -> None:
+def test_stable_step_is_nine_tenths_of_both_limits() -> None:
     assert stable_step(4.0) == pytest.approx(0.9)
     assert stable_step(1.0, 0.3) == pytest.approx(0.9 * 2 * (math.sqrt(1.09) - 0.3))
     assert stable_step(1.0, 0.0, 0.5) == pytest.approx(0.9 * 2 / math.sqrt(1.5))
 
 
-def test_mass_scaling_leaves_rigid_modes_alone_and_brings_stiff_ones_inside_the_step() -> None:
-    """With M* a mode's own frequency is below 2 / (Δt √(1 + α)) however stiff it is."""
+def test_mass_scaling_limits_stiff_modes_but_not_rigid_ones() -> None:
+    """With the scaled mass M* a mode's frequency is below 2 / (Δt √(1 + α)), for any stiffness."""
     stiffness, local, dt = np.array([0.0, 1.0, 1e6, 1e12]), 0.5, 0.1
     factor = mass_factor(stiffness, np.ones(4), dt, local)
     assert factor[0] == 1.0
@@ -167,8 +167,8 @@ def test_mass_scaling_leaves_rigid_modes_alone_and_brings_stiff_ones_inside_the_
 
 @pytest.mark.parametrize("scatter", ["bits", "size=0.05,friction=0.1"])
 @pytest.mark.parametrize("changes", [{}, {"support__kind": "fixed-first-course"}, {"wall__ends": "toothed"}])
-def test_kernels_are_the_jump_operator_and_its_transpose(changes: dict[str, Any], scatter: str) -> None:
-    """Against the sparse operators that limit analysis uses; of alike stones, and where no two joints are alike."""
+def test_kernels_equal_jump_operator_and_its_transpose(changes: dict[str, Any], scatter: str) -> None:
+    """Against the sparse operators of limit analysis; for equal blocks and for a wall without two equal joints."""
     scene = Scatter.read(scatter).draw(panel(joint__mortar=STIFF, **changes), 1)
     system, points = rigid_system(scene), contact_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
@@ -196,7 +196,7 @@ def _stiffness_matrix(scene: Scene) -> Array:
 
 
 @pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"wall__block_width": 0.06}])
-def test_blocks_alone_bound_the_highest_frequency_from_above_and_closely(changes: dict[str, Any]) -> None:
+def test_single_block_bound_on_highest_frequency_is_close(changes: dict[str, Any]) -> None:
     scene = panel(joint__mortar=STIFF, **changes)
     free = np.repeat(~scene.fixed, 3)
     root = 1 / np.sqrt(mass_matrix_diagonal(scene)[free])
@@ -204,16 +204,16 @@ def test_blocks_alone_bound_the_highest_frequency_from_above_and_closely(changes
     exact = float(np.linalg.eigvalsh(scaled)[-1])
     bound = rigid_system(scene).interface.frequency_squared
     assert exact <= bound * (1 + 1e-12)
-    assert math.sqrt(exact / bound) > 0.8  # half blocks beside whole ones; 0.95 where all are alike
+    assert math.sqrt(exact / bound) > 0.8  # half blocks next to whole ones; 0.95 if all blocks are equal
 
 
-def test_own_frequency_of_one_mass_on_a_spring() -> None:
+def test_block_frequency_of_one_mass_on_spring() -> None:
     assert block_frequency_squared(np.array([[[3.0]]]), np.array([[2.0]])) == pytest.approx(1.5)
 
 
 @pytest.mark.parametrize("mode", [1, 3, 5])
-def test_a_column_of_blocks_has_the_frequencies_of_a_chain(mode: int) -> None:
-    """N equal blocks on N joints: ω_j = 2 √(k/m) sin((2j − 1) π / (2 (2N + 1))); the shape keeps its cosine."""
+def test_column_of_blocks_has_frequencies_of_spring_mass_chain(mode: int) -> None:
+    """N equal blocks on N joints: ω_j = 2 √(k/m) sin((2j − 1) π / (2 (2N + 1))); modes follow their cosine in time."""
     n, width, height = 5, 0.2, 0.1
     glued = {"friction": 0.6, "cohesion": 1e9, "normal_stiffness": 1e9, "shear_stiffness": 1e9}
     wall = {"block_width": width, "block_height": height, "thickness": 1.0, "courses": [[1]] * n}
@@ -233,8 +233,8 @@ def test_a_column_of_blocks_has_the_frequencies_of_a_chain(mode: int) -> None:
         assert state.motion[rise] == pytest.approx(shape * math.cos(step * theta), abs=1e-14)
 
 
-def test_energy_of_an_elastic_column_is_kept_to_rounding_at_the_time_of_its_motion() -> None:
-    """½ v⁻·M v⁺ + ½ u·K u − f·u is what central differences conserve; with v⁻ alone a share of the step is missed."""
+def test_elastic_column_conserves_central_difference_energy() -> None:
+    """Central differences conserve ½ v⁻·M v⁺ + ½ u·K u − f·u; using v⁻ alone misses a share of each step's energy."""
     glued = {"friction": 0.6, "cohesion": 1e9, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
     wall = {"block_width": 0.2, "block_height": 0.1, "thickness": 1.0, "courses": [[1], [0.5, 0.5], [1]]}
     run = Run(rigid_system(panel(wall=wall, joint=glued)), local=0.0, viscous=0.0)
@@ -248,8 +248,8 @@ def test_energy_of_an_elastic_column_is_kept_to_rounding_at_the_time_of_its_moti
     assert lagging > 1e-2 * work
 
 
-def test_momentum_of_a_free_wall_is_kept() -> None:
-    """Linear and angular, to 1e-12, while joints open and slide."""
+def test_free_wall_conserves_momentum() -> None:
+    """Linear and angular momentum, to 1e-12, while joints open and slide."""
     scene = panel(wall__height=0.24, joint__mortar=STIFF)
     system = rigid_system(scene)
     mass = np.zeros(len(system.mass))
@@ -286,7 +286,7 @@ def test_pinned_corners_do_not_move(kind: str) -> None:
 # --- one block -----------------------------------------------------------------------------------------------
 
 
-def test_weight_arrives_at_the_base() -> None:
+def test_base_reaction_equals_weight() -> None:
     scene = panel(joint__mortar=STIFF)
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
@@ -302,7 +302,7 @@ def test_stick_and_slip_under_a_harmonic_force() -> None:
     run = Run(rigid_system(scene), local=0.0, viscous=0.1)
     state = State.at_rest(run.system)
     assert settle(run, state, 0.0, Criteria(collapse=1.0, rest=1e-12, interval=1000, budget=200_000)) == "stable"
-    # The joint's spring is brought to the brink first: loaded at once it would give the block a speed F / √(k m).
+    # The joint's spring is first loaded almost to slip: a sudden load would give the block a speed F / √(k m).
     assert settle(run, state, 0.8 * (1 - 1e-6), Criteria(collapse=1.0, rest=1e-9)) == "stable"
     state.velocity[:] = 0.0
     weight, interval = GRAVITY, 20
@@ -316,7 +316,7 @@ def test_stick_and_slip_under_a_harmonic_force() -> None:
     assert run.system.motion_of_blocks(state.motion)[0, 0] - start == pytest.approx(-0.00869717, abs=2e-8)
 
 
-def test_coulomb_oscillator_turns_at_the_known_points_and_sticks() -> None:
+def test_coulomb_oscillator_has_known_turning_points_and_sticks() -> None:
     """m = 1, k = 100, μN = 2, x0 = 0.11: turning points 0.11, −0.07, 0.03, 0.01, at rest from t = 3π/10."""
     scene = block_on_base(1.0, 0.01, 2.0 / GRAVITY, stiffness=1e9)
     system = rigid_system(scene)
@@ -327,7 +327,7 @@ def test_coulomb_oscillator_turns_at_the_known_points_and_sticks() -> None:
     state = State.at_rest(run.system)
     state.motion[y] = -GRAVITY / 1e9  # resting on its base
     state.motion[x] = 0.11
-    state.history[4] = -0.11  # slip of the block, b in a downward normal's frame, starts without a force
+    state.history[4] = -0.11  # the slip of the block (side b in the frame of a downward normal) starts without a force
     state.history[3] = -0.11
     state.history[2] = -GRAVITY / 1e9
     track = []
@@ -341,7 +341,7 @@ def test_coulomb_oscillator_turns_at_the_known_points_and_sticks() -> None:
     assert place[time > 3 * math.pi / 10 + 0.01] == pytest.approx(0.01, abs=1e-5)
 
 
-def test_newmark_block_slides_as_far_as_it_should() -> None:
+def test_newmark_block_slides_exact_distance() -> None:
     """μ = 0.3 under a pulse of 0.5 g for 0.4 s: 0.2616 m."""
     run = Run(rigid_system(block_on_base(1.0, 0.1, 0.3, stiffness=1e9)), local=0.0)
     state = State.at_rest(run.system)
@@ -368,8 +368,8 @@ def test_shear_box_slides_at_cohesion_and_friction(force: float, cohesion: float
     assert plateau * force == pytest.approx(cohesion + force * friction, rel=1e-3)
 
 
-def test_speed_is_halved_until_the_peak_settles() -> None:
-    """A block pushed too fast shows its inertia above μ; slowed down, its peak comes to μ and stays there."""
+def test_drive_speed_is_halved_until_peak_converges() -> None:
+    """A block pushed too fast shows inertia above μ; at lower speeds its peak converges to μ."""
     run = Run(rigid_system(block_on_base(1.0, 0.01, 0.4, stiffness=1e9)), local=0.5)
     state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=1.0))
@@ -382,12 +382,12 @@ def test_speed_is_halved_until_the_peak_settles() -> None:
 
 @pytest.mark.parametrize("stiffness", [1e10, 1e11, 1e12])
 @pytest.mark.parametrize(("width", "friction", "exact"), [(0.0597, 0.9, 0.0597 / 0.24), (0.24, 0.497, 0.497)])
-def test_a_block_topples_at_b_over_h_and_slides_at_mu(
+def test_block_topples_at_b_over_h_and_slides_at_mu(
     width: float, friction: float, exact: float, stiffness: float
 ) -> None:
-    """b × 0.24: λ within a thousandth, whatever the joints' stiffness."""
+    """Block b × 0.24: λ to a thousandth, for any joint stiffness."""
     scene = block_on_base(width, 0.24, friction, stiffness=stiffness)
-    outcome = dem_dynamic(scene, 1e-3, budget=20_000_000)  # at 1e12 Pa/m a step is a microsecond
+    outcome = dem_dynamic(scene, 1e-3, budget=20_000_000)  # at 1e12 Pa/m a time step is a microsecond
     assert outcome.status == "collapse"
     assert outcome.lower is not None
     assert outcome.upper is not None
@@ -399,8 +399,8 @@ def test_a_block_topples_at_b_over_h_and_slides_at_mu(
 # --- walls ---------------------------------------------------------------------------------------------------
 
 
-def test_energy_is_accounted_for_through_a_collapse() -> None:
-    """Work of the loads = kinetic + stored + friction + damped, to 1 % of it, at rest and in the fall."""
+def test_energy_balance_closes_through_collapse() -> None:
+    """Work of the loads = kinetic + stored + friction + damped, to 1 % of the work, at rest and during collapse."""
     scene = panel(wall__height=0.24, wall__block_width=0.06, joint__mortar=STIFF)
     bound = limit(scene).upper
     assert bound is not None
@@ -414,7 +414,7 @@ def test_energy_is_accounted_for_through_a_collapse() -> None:
     assert run.ledger(state).kinetic > 0
 
 
-def test_a_wall_that_falls_under_its_weight_is_infeasible() -> None:
+def test_wall_collapsing_under_its_weight_is_infeasible() -> None:
     scene = pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.5)
     stiff = scene.with_joint(elasticity=Mortar(1e9, 0.2, 0.01))
     assert dem_dynamic(stiff).status == "infeasible"
@@ -422,28 +422,28 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible() -> None:
 
 @pytest.mark.parametrize(("springy", "far"), [(True, 1.0), (False, 0.5)])
 @pytest.mark.parametrize(("exponent", "falls"), [(2.0, True), (1.0, True), (0.5, False)])
-def test_a_fall_is_a_motion_that_does_not_slow_down(exponent: float, falls: bool, springy: bool, far: float) -> None:
-    """x = t^p past the mark: falling for p ≥ 1, and for p < 1 not before it has come 2^4 units."""
+def test_motion_without_deceleration_is_collapse(exponent: float, falls: bool, springy: bool, far: float) -> None:
+    """x = t^p beyond the threshold: collapse for p ≥ 1, and for p < 1 only once x reaches 2^4 units."""
     fall = CollapseDetector(elastic=springy)
     at = next(t for t in range(1, 10_000_000) if fall.goes_on((t / 1000) ** exponent, t))
     assert (at / 1000) ** exponent == pytest.approx(far if falls else 2.0**CollapseDetector.FARTHEST, rel=0.01)
 
 
-def test_a_motion_that_has_only_just_come_to_its_speed_falls_at_a_whole_unit() -> None:
-    """Slow between an eighth and a quarter, at the speed before that again afterwards."""
+def test_motion_that_regains_its_speed_is_collapse_at_one_unit() -> None:
+    """Slow between 1/8 and 1/4 of a unit, and then at its earlier speed again."""
     fall = CollapseDetector()
-    time = np.cumsum([0, *[100] * 8, *[400] * 8, *[100] * 100])  # at each 64th of a unit
+    time = np.cumsum([0, *[100] * 8, *[400] * 8, *[100] * 100])  # at every 1/64 of a unit
     assert next(k for k, t in enumerate(time, 1) if fall.goes_on(k / 64, int(t))) == pytest.approx(64, abs=1)
 
 
-def test_one_look_says_nothing_of_a_speed() -> None:
-    """A wall that gives way by less than the farthest mark before it is looked at first is not in collapse."""
+def test_first_check_alone_does_not_detect_collapse() -> None:
+    """A wall that gives way by less than the farthest threshold before the first check is not in collapse."""
     assert not CollapseDetector().goes_on(15.9, 200)
     assert CollapseDetector().goes_on(16.1, 200)
 
 
-def test_observers_see_every_look_and_ctrl_c_leaves_what_was_found() -> None:
-    """Stopped in the middle of the search: undecided, with the load borne so far and its curve."""
+def test_interrupt_keeps_bracket_and_curve_found_so_far() -> None:
+    """Interrupted by an observer during the search: undecided, with the lower bound so far and the curve."""
     scene = panel(joint__mortar=STIFF, wall__height=0.24)
     seen: list[float] = []
 
@@ -464,17 +464,17 @@ def test_observers_see_every_look_and_ctrl_c_leaves_what_was_found() -> None:
     assert outcome.steps
 
 
-def test_a_budget_that_runs_out_is_undecided() -> None:
+def test_exhausted_budget_is_undecided() -> None:
     outcome = dem_dynamic(panel(joint__mortar=STIFF), budget=200)
     assert outcome.status == "undecided"
     assert outcome.multiplier is None
 
 
-def test_no_tension_joint_turns_as_its_pressure_allows() -> None:
-    """l = t = 0.12 m, k_n = 1e9 Pa/m, N = 1000 N at e = 0.01, 0.03, 0.05 m: within the kern, and beyond it.
+def test_no_tension_joint_has_exact_rotation_under_eccentric_force() -> None:
+    """l = t = 0.12 m, k_n = 1e9 Pa/m, N = 1000 N at e = 0.01, 0.03, 0.05 m: within the kern, and outside it.
 
     Rotations 5.787037e-4, 2.057613e-3, 1.851852e-2: from N / (k t l) ± 6 e / l, and 2 N / (k t l_c²) with
-    l_c = 3 (l/2 − e) where a part of the joint opens.
+    l_c = 3 (l/2 − e) if part of the joint opens.
     """
     scene = block_on_base(0.12, 0.12, 0.6)
     points = joint_points(scene.joints, 0.12, _midpoints(20_000))
@@ -491,7 +491,7 @@ def _midpoints(n: int) -> Rule:
 
 
 def _rest_of(law: KernelLaw, area: Array, xi: Array, normal: float, e: float) -> tuple[float, float]:
-    """Middle opening and rotation at which the law's forces carry a normal force at an eccentricity (Newton)."""
+    """Opening at the centre and rotation at which the law carries a normal force at an eccentricity (Newton)."""
     unknown = np.array([-normal / (area @ law.normal_stiffness), 0.0])
     for _ in range(60):
         opening = unknown[0] + unknown[1] * xi

@@ -1,4 +1,4 @@
-"""Time steps by a wall's own highest frequency: that of its matrices, and dashpots as before."""
+"""Time steps from the wall's own highest frequency: against full matrices, with unchanged dashpots."""
 
 import math
 from dataclasses import replace
@@ -17,13 +17,13 @@ from tests.walls import courses, panel
 
 
 def square_and_bound(system: BlockSystem) -> tuple[float | None, float]:
-    """ω² that time steps of a system go by, and the bound from each block alone [1/s²]."""
+    """ω² that sets the time step, and the bound from each block separately [1/s²]."""
     interface = with_highest_frequency(system).interface
     return interface.closer, interface.frequency_squared
 
 
 def largest_of_matrices(scene: Scene) -> float:
-    """Largest ω² [1/s²] of rigid blocks by full matrices, in the motions that leave pins alone."""
+    """Largest ω² [1/s²] of rigid blocks from full matrices, for the motions that pins allow."""
     points, stiffness = contact_points(scene), joint_stiffness(scene.joint)
     jump = jump_operator(points, scene.blocks.centroid)
     B = np.vstack([jump.opening.toarray(), jump.slip.toarray()])
@@ -45,16 +45,16 @@ WALLS: dict[str, Scene] = {
 
 
 @pytest.mark.parametrize("scene", WALLS.values(), ids=WALLS)
-def test_it_is_the_highest_of_all_vibrations(scene: Scene) -> None:
-    """By Lanczos' method against the eigenvalues of full matrices."""
+def test_frequency_is_largest_eigenvalue(scene: Scene) -> None:
+    """Lanczos' method against the eigenvalues of full matrices."""
     square, bound = square_and_bound(rigid_system(scene))
     assert square is not None
     assert square == pytest.approx(largest_of_matrices(scene), rel=1e-3)
     assert square <= bound
 
 
-def test_steps_are_longer_where_joints_do_not_line_up_and_dashpots_stay() -> None:
-    """At one time step a run is the same to the last bit; by itself it takes a sixth less."""
+def test_steps_are_longer_in_irregular_bond_with_same_dashpots() -> None:
+    """At the same time step a run is identical to the last bit; the own step is more than 15 % longer."""
     system = rigid_system(published_scene("wall-w1"))
     closer = with_highest_frequency(system)
     assert Run(closer).dt > 1.15 * Run(system).dt
@@ -66,6 +66,6 @@ def test_steps_are_longer_where_joints_do_not_line_up_and_dashpots_stay() -> Non
     assert np.array_equal(motions[0], motions[1])
 
 
-def test_what_does_not_move_has_none() -> None:
+def test_fixed_wall_has_no_frequency() -> None:
     system = rigid_system(published_scene("wall-w1"))
     assert square_and_bound(replace(system, mass=np.full_like(system.mass, math.inf)))[0] is None

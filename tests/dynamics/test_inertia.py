@@ -1,4 +1,4 @@
-"""Fictitious inertia: what it makes longer, and what it leaves alone."""
+"""Fictitious inertia: longer time steps without effect on statics."""
 
 from dataclasses import replace
 from typing import Any
@@ -37,13 +37,13 @@ STONE = {"block__young": 1e10, "block__poisson": 0.2, "joint__mortar": MORTAR}
 
 
 def rigid(scene: Scene) -> tuple[BlockSystem, BlockSystem]:
-    """Rigid blocks with their own inertia, and with fictitious one."""
+    """Rigid blocks with their own inertia, and with fictitious inertia."""
     system = rigid_system(scene)
     return system, with_fictitious_inertia(scene, system)
 
 
 def deformable(scene: Scene) -> tuple[BlockSystem, BlockSystem]:
-    """The same of deformable blocks."""
+    """Deformable blocks with their own inertia, and with fictitious inertia."""
     wall = modal_wall(scene)
     system = system_of(wall)
     return system, fictitious_inertia.with_fictitious_inertia(wall, system)
@@ -53,7 +53,7 @@ BOTH = pytest.mark.parametrize("systems", [rigid, deformable])
 
 
 def factors_of(scene: Scene, heavier: float = 1.0) -> tuple[Array, Array]:
-    """Factors of a wall's blocks, and ω² of their three motions against their own joints [1/s²]."""
+    """Inertia factors of the blocks, and ω² of their three motions on their own joints [1/s²]."""
     points, mass = contact_points(scene), heavier * held_masses(scene).reshape(-1, 3)
     normal, shear = wall_stiffness(scene, points.joint)
     own = rigid_stiffness(points, points.block, scene.blocks.centroid, mass, normal, shear)
@@ -61,7 +61,7 @@ def factors_of(scene: Scene, heavier: float = 1.0) -> tuple[Array, Array]:
 
 
 @pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"wall__height": 0.24}])
-def test_no_motion_of_a_block_stays_faster_than_most_are_in_the_slowest(changes: dict[str, Any]) -> None:
+def test_fictitious_inertia_limits_block_frequencies_to_median_of_slowest_motion(changes: dict[str, Any]) -> None:
     scene = panel(joint__mortar=MORTAR, **changes)
     factors, square = factors_of(scene)
     moving = ~scene.fixed
@@ -69,7 +69,7 @@ def test_no_motion_of_a_block_stays_faster_than_most_are_in_the_slowest(changes:
     assert (square / factors)[moving] == pytest.approx(np.minimum(square, slowest)[moving])
     assert (factors >= 1).all()
     assert (factors[scene.fixed] == 1).all()
-    # Half of the blocks at least keep their mass in one direction.
+    # At least half of the blocks keep their mass in one direction.
     assert (factors[moving] == 1).mean(axis=0).max() >= 0.5
     stiffer = panel(joint__mortar={**MORTAR, "young": 1e12}, **changes)
     assert factors_of(stiffer, heavier=1e-4)[0] == pytest.approx(factors)
@@ -77,14 +77,14 @@ def test_no_motion_of_a_block_stays_faster_than_most_are_in_the_slowest(changes:
 
 @BOTH
 @pytest.mark.parametrize(("name", "times"), [("panel-01", 1.6), ("panel-04", 2.0), ("wall-w1", 1.5)])
-def test_steps_become_longer(systems: Any, name: str, times: float) -> None:
+def test_fictitious_inertia_lengthens_steps(systems: Any, name: str, times: float) -> None:
     own, heavier = systems(published_scene(name))
     assert Run(with_highest_frequency(heavier)).dt > times * Run(with_highest_frequency(own)).dt
 
 
 @pytest.mark.parametrize(("name", "rigid_times", "times"), [("panel-04", 1.5, 2.2), ("panel-01", 1.1, 1.4)])
-def test_steps_of_both_models_are_longer_for_all_their_dashpots(name: str, rigid_times: float, times: float) -> None:
-    """As the models take them, beside those of blocks with their own inertia and usual dashpots."""
+def test_model_steps_are_longer_including_dashpots(name: str, rigid_times: float, times: float) -> None:
+    """Steps as the models use them, against blocks with their own inertia and the usual dashpots."""
     scene = published_scene(name)
     wall = modal_wall(scene)
     system = system_of(wall)
@@ -94,8 +94,8 @@ def test_steps_of_both_models_are_longer_for_all_their_dashpots(name: str, rigid
 
 @BOTH
 @pytest.mark.parametrize("name", ["panel-01", "wall-w1"])
-def test_the_frequency_that_steps_go_by_is_the_highest_of_the_heavier_wall(systems: Any, name: str) -> None:
-    """Against eigenvalues of full matrices; the viscosity of blocks counts as stiffness."""
+def test_step_frequency_is_highest_of_wall_with_fictitious_inertia(systems: Any, name: str) -> None:
+    """Against eigenvalues of full matrices; the blocks' viscosity counts as stiffness."""
     _, system = systems(published_scene(name))
     interface = with_highest_frequency(system, CALMER).interface
     stiffness, mass = elastic_stiffness(system)
@@ -108,8 +108,8 @@ def test_the_frequency_that_steps_go_by_is_the_highest_of_the_heavier_wall(syste
 
 @pytest.mark.parametrize("young", [1e10, 1e12])
 @pytest.mark.parametrize("name", ["panel-04", "wall-w1", *at_length("panel-01")])
-def test_deformations_leave_the_lowest_frequency_to_a_hundredth(name: str, young: float) -> None:
-    """Beside that of the same wall whose rigid motions alone are heavier."""
+def test_fictitious_inertia_of_deformations_keeps_lowest_frequency(name: str, young: float) -> None:
+    """To 1 %, against the same wall with fictitious inertia of rigid motions only."""
     wall = modal_wall(published_scene(name).with_block(young=young))
     heavier = fictitious_inertia._heavier(wall)
     alone = replace(system_of(wall), mass=heavier.mass)
@@ -119,8 +119,8 @@ def test_deformations_leave_the_lowest_frequency_to_a_hundredth(name: str, young
 
 
 @BOTH
-def test_what_a_wall_bears_at_rest_knows_no_masses(systems: Any) -> None:
-    """The same rest under its weight, to what is not balanced of it; joints are glued, so that nothing slips."""
+def test_static_equilibrium_does_not_depend_on_masses(systems: Any) -> None:
+    """The same rest under self weight, to the residual; bonded joints, so that nothing slips."""
     scene = panel(joint__cohesion=1e9, **STONE)
     rests = []
     for system in systems(scene):
@@ -143,16 +143,16 @@ def test_blocks_on_pins_keep_their_masses(pinned: bool) -> None:
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_the_message_says_how_much_heavier_blocks_are(model: Any) -> None:
-    """Of both models, which have the same joint points on this wall."""
+def test_message_reports_inertia_factor(model: Any) -> None:
+    """Both models have the same joint points on this wall."""
     scene = published_scene("wall-w1")
     said = model(scene).message
     factors, _ = factors_of(scene)
     assert f"inertia of blocks scaled up to {factors.max():.3g} times" in said
 
 
-def test_blocks_that_a_beam_leads_have_their_own_inertia() -> None:
-    """Its path takes time, in which they have to move."""
+def test_driven_walls_keep_their_own_inertia() -> None:
+    """The drive path takes physical time, in which the blocks have to move."""
     beam = {"height": 0.1, "condition": "level", "force": [0, -2e3], "drive": {"displacement": [1e-3, 0]}}
     scene = panel(load__live=None, beam=beam, **STONE)
     run = quasi_static_run(scene)

@@ -1,4 +1,4 @@
-"""Ties, beams and supports that move, by the two models in motion, against what statics says."""
+"""Ties, driven beams and moving supports in the two dynamic models, against statics."""
 
 from itertools import pairwise
 from types import SimpleNamespace
@@ -73,27 +73,27 @@ def brackets(outcome: Outcome, exact: float, width: float) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("preload", [0.0, 4.0])
-def test_a_block_on_a_tie_slides_where_friction_and_the_tie_give_way(model: Any, preload: float) -> None:
-    """λ = μ + T_y / W, whatever the preload."""
+def test_block_on_tie_slides_at_friction_plus_tie_yield_force(model: Any, preload: float) -> None:
+    """λ = μ + T_y / W, for any preload."""
     scene = block(tie=[{**TIE, "preload": preload}])
     brackets(model(scene, 3e-3), 0.6 + 5.0 / (9.81 * scene.mass[0]), 3e-3)
 
 
-def test_a_block_topples_about_its_corner_against_a_tie_at_its_top() -> None:
+def test_block_topples_about_corner_against_tie_at_its_top() -> None:
     """λ W h/2 = W b/2 + T_y h."""
     scene = block(0.06, 0.24, tie=[{**TIE, "from": [0.0, 0.24], "to": [-1.0, 0.24]}])
     brackets(dem_dynamic(scene, 3e-3), 0.25 + 2 * 5.0 / (9.81 * scene.mass[0]), 3e-3)
 
 
-def test_a_tie_that_is_pushed_does_not_push_back() -> None:
+def test_tie_carries_no_compression() -> None:
     """A block pushed towards the anchor slides at μ."""
     scene = block(tie=[{**TIE, "from": [0.24, 0.03], "to": [1.0, 0.03]}])
     brackets(dem_dynamic(scene, 3e-3), 0.6, 3e-3)
 
 
 @pytest.mark.parametrize("preload", [0.0, 4.0])
-def test_energy_of_a_tie_that_yields_is_accounted_for(preload: float) -> None:
-    """Stretched by 10 elastic lengths and let go: T_y × the rest is spent, the tie is slack, and nothing is lost."""
+def test_energy_balance_closes_for_yielding_tie(preload: float) -> None:
+    """Stretched by 10 elastic elongations and released: T_y × the rest is dissipated, the tie is slack, no error."""
     scene = block(tie=[{**TIE, "preload": preload}])
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
@@ -118,8 +118,8 @@ def test_energy_of_a_tie_that_yields_is_accounted_for(preload: float) -> None:
     assert run.system.ties.elongation(state.motion)[0] < elongation + state.stretch[0]
 
 
-def test_ties_pull_two_blocks_together_where_their_material_points_are() -> None:
-    """Elongation is (u_b − u_a) · n, in rigid and in modal coordinates alike."""
+def test_tie_elongation_is_that_between_material_points() -> None:
+    """Elongation is (u_b − u_a) · n, in rigid and in modal coordinates."""
     tie = {**TIE, "from": [0.06, 0.05], "to": [0.30, 0.10]}
     scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, block__young=1e10, tie=[tie])
     rigid, modal = rigid_system(scene), system_of(modal_wall(scene))
@@ -134,8 +134,8 @@ def test_ties_pull_two_blocks_together_where_their_material_points_are() -> None
         assert system.ties.elongation(coordinates)[0] == pytest.approx(exact, rel=1e-12)
 
 
-def test_a_stiff_tie_shortens_the_time_step_as_a_spring_does() -> None:
-    """On joints that are nothing beside it ω² is that of the block on its tie."""
+def test_stiff_tie_reduces_time_step_as_spring() -> None:
+    """With joints of negligible stiffness, ω² is that of the block on its tie."""
     scene = block(tie=[{**TIE, "area": 1.0, "to": [-0.01, 0.03]}])
     soft = block(tie=[TIE])
     rows, mass = rigid_system(scene).ties, rigid_system(scene).mass
@@ -154,10 +154,10 @@ FORCE, DISPLACEMENT = {"force": [1, 0]}, {"displacement": [0.002, 0]}
     ("model", "drive"), [(dem_dynamic, FORCE), (dem_dynamic, DISPLACEMENT), *at_length((fem, DISPLACEMENT))]
 )
 @pytest.mark.parametrize("condition", ["level", "free"])
-def test_a_pier_rocks_in_double_bending_under_a_level_beam_and_as_a_cantilever_under_a_free_one(
+def test_pier_rocks_in_double_bending_under_level_beam_and_as_cantilever_under_free_beam(
     model: Any, condition: str, drive: dict[str, Any]
 ) -> None:
-    """V h = (N + W/2) b between opposite corners; V h = (N + W) b/2 where the beam turns with the pier."""
+    """V h = (N + W/2) b between opposite corners; V h = (N + W) b/2 if the beam rotates with the pier."""
     scene = under_beam(condition, {**drive, "at": 0.72}, width=0.24, height=0.72)
     weight = 9.81 * scene.mass[0]
     exact = (N + weight / 2 if condition == "level" else (N + weight) / 2) * 0.24 / 0.72
@@ -166,10 +166,10 @@ def test_a_pier_rocks_in_double_bending_under_a_level_beam_and_as_a_cantilever_u
 
 @pytest.mark.parametrize("condition", ["level", "free"])
 @pytest.mark.parametrize("tolerance", [0.05, 0.1, 0.3])
-def test_wide_brackets_hold_what_a_pier_bears_under_a_beam_that_shakes(condition: str, tolerance: float) -> None:
-    """Under a beam without mass its force shakes at high speeds, and crests of that are the higher the shorter windows.
+def test_wide_brackets_contain_strength_of_pier_under_vibrating_beam(condition: str, tolerance: float) -> None:
+    """The force of a massless beam vibrates at high speeds, and short windows have higher peaks than long ones.
 
-    Brackets about those lay up to 2 % above V h = (N + W/2) b, or (N + W) b/2.
+    Brackets from short windows lay up to 2 % above V h = (N + W/2) b, or (N + W) b/2.
     """
     size = {"block_width": 0.4, "block_height": 1.0, "thickness": 0.12, "courses": [[1]]}
     beam = {
@@ -185,7 +185,7 @@ def test_wide_brackets_hold_what_a_pier_bears_under_a_beam_that_shakes(condition
     brackets(fem(scene, tolerance), exact, tolerance)
 
 
-def test_a_pier_that_is_pushed_to_the_left_answers_as_one_pushed_to_the_right() -> None:
+def test_pier_pushed_left_mirrors_pier_pushed_right() -> None:
     right, left = (
         dem_dynamic(under_beam("level", {"displacement": [u, 0], "at": 0.72}, width=0.24, height=0.72), 0.01)
         for u in (0.001, -0.001)
@@ -207,22 +207,22 @@ SNAPS = {
 
 
 def under_a_light_beam(path: float, joint: dict[str, Any], condition: str = "fixed-height") -> Scene:
-    """One joint, of 0.1 m² and without weight, under a beam that slides along it."""
+    """A wall with one joint of 0.1 m², without weight, under a beam that slides along it."""
     beam = {"height": 0.1, "mass": 100.0, "condition": condition, "drive": {"displacement": [path, 0], "at": 0.1}}
     size = {"block_width": 0.5, "block_height": 0.1, "thickness": 0.2, "courses": [[1]]}
     support = {"support__kind": "fixed-first-course", "load__gravity": 0.0, "load__live": None}
     return panel(wall=size, joint=joint, block__young=5e10, beam=beam, **support)
 
 
-def test_a_joint_without_tension_that_nothing_presses_bears_its_cohesion() -> None:
-    """c A, though it opens by some 1e-15 m on the way, of which its fracture energy knows nothing."""
+def test_unloaded_joint_without_tensile_strength_carries_its_cohesion() -> None:
+    """c A, although the joint opens by some 1e-15 m of rounding, which must not use up its fracture energy."""
     joint = {**SNAPS, "cohesion": 1e5, "tensile_strength": 0.0, "fracture_energy_1": 10.0, "fracture_energy_2": 100.0}
     brackets(dem_dynamic(under_a_light_beam(3e-3, joint, "free"), 0.01), 1e5 * 0.1, 0.011)
 
 
 @pytest.mark.parametrize("way", [1e-3, 2e-2, *at_length(0.3)])
-def test_a_joint_that_snaps_bears_its_strength_however_long_the_way(way: float) -> None:
-    """c A of a joint without weight, whose force rises over 0.08 mm and falls over 2 mm; rows are up to 1.5 mm long."""
+def test_peak_of_snapping_joint_does_not_depend_on_drive_length(way: float) -> None:
+    """c A of a weightless joint whose force rises over 0.08 mm and falls over 2 mm; rows are up to 1.5 mm long."""
     outcome = dem_dynamic(under_a_light_beam(way, SNAPS), 0.01)
     brackets(outcome, 3e5 * 0.1, 0.011)
     assert outcome.curve[:, 1].max() == pytest.approx(outcome.multiplier, rel=1e-12)
@@ -230,21 +230,21 @@ def test_a_joint_that_snaps_bears_its_strength_however_long_the_way(way: float) 
 
 
 @pytest.mark.parametrize("steps", [200.0, np.nextafter(200.0, 0.0), np.nextafter(200.0, np.inf)])
-def test_windows_do_not_depend_on_the_last_bit_of_a_time_step(steps: float) -> None:
-    """That of the joint above differs with the processor: two windows of a row miss 0.2 % of its strength, unseen."""
+def test_number_of_windows_is_robust_to_rounding_of_time_step(steps: float) -> None:
+    """The step of the joint above varies with the processor; two windows per row would miss 0.2 % of its strength."""
     state = State.at_rest(rigid_system(under_beam("free", {"displacement": [1e-3, 0]})))
     assert Peaks(state, steps).windows == 4
 
 
 @pytest.mark.parametrize("steps", [2000.0, np.nextafter(2000.0, 0.0), np.nextafter(2000.0, np.inf)])
-def test_stages_of_a_settlement_do_not_depend_on_the_last_bit_of_a_time_step(steps: float) -> None:
-    """Of a support that changes its speed three times in a row, not four, the bracket is half as wide, or twice."""
+def test_number_of_settlement_stage_windows_is_robust_to_rounding(steps: float) -> None:
+    """If the support changes its speed three times in a row instead of four, the bracket is half as wide, or twice."""
     assert windows_of_stage(steps) == 4
 
 
 @pytest.mark.parametrize(("width", "height", "courses"), [(0.1, 0.1, 2), (0.1, 0.3, 4), (0.3, 0.1, 14), (0.7, 0.7, 14)])
-def test_toes_of_a_symmetric_wall_are_each_others_mirror_images(width: float, height: float, courses: int) -> None:
-    """Joint points lie at the quarters of its length, and those of the joint at half its height are of both toes."""
+def test_toes_of_symmetric_wall_are_mirror_images(width: float, height: float, courses: int) -> None:
+    """Some joint points lie exactly at a quarter of the length; those of the joint at mid height are in both toes."""
     size = {"block_width": width, "block_height": height, "length": 4 * width, "height": courses * height}
     beam = {"height": 0.1, "condition": "free", "force": [0, -N], "drive": {"displacement": [1e-3, 0]}}
     scene = panel(wall=size | {"thickness": 0.1}, joint__mortar=MORTAR, load__live=None, beam=beam)
@@ -263,10 +263,10 @@ def test_toes_of_a_symmetric_wall_are_each_others_mirror_images(width: float, he
     assert len(left) == all_of_it.all(axis=1).sum()
 
 
-def test_what_sets_a_wall_in_motion_is_not_its_strength() -> None:
-    """Two blocks turn between their base and a level beam at F h = W b / 2 + N b, under its N.
+def test_force_that_accelerates_wall_is_not_its_strength() -> None:
+    """Two blocks rotate between base and level beam at F h = W b / 2 + N b, with N from the beam.
 
-    The beam's joint bears more than three times as much, and so it did while the beam set blocks in motion.
+    The beam's joint carries more than three times as much, and did so while the beam accelerated the blocks.
     """
     joint = {"cohesion": 3e4, "tensile_strength": 0.0, "normal_stiffness": 1e12, "shear_stiffness": 4e11}
     scene = scene_from_dict(
@@ -290,8 +290,8 @@ def test_what_sets_a_wall_in_motion_is_not_its_strength() -> None:
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
-def test_a_wall_that_gives_way_while_it_shakes_bears_no_more_than_limit_analysis(model: Any) -> None:
-    """A door between two piers, pushed at a beam: limit analysis has one load by either flow rule."""
+def test_vibrating_wall_carries_no_more_than_limit_load(model: Any) -> None:
+    """Door between two piers, pushed at a beam: limit analysis has the same load with either flow rule."""
     door = {"from": [0.4, 0.0], "to": [0.8, 0.8], "lintel": {"height": 0.2, "bearing": 0.2}}
     size = {"length": 1.2, "height": 1.2, "block_width": 0.4, "block_height": 0.2, "thickness": 0.2}
     scene = scene_from_dict(
@@ -307,8 +307,8 @@ def test_a_wall_that_gives_way_while_it_shakes_bears_no_more_than_limit_analysis
     brackets(model(scene), limit(scene).multiplier or 0.0, 0.01)
 
 
-def test_a_block_rocks_along_its_exact_curve() -> None:
-    """V = W (b/2 cos θ − h/2 sin θ) / (h cos θ + b sin θ) at the displacement beside it, not half a row before."""
+def test_rocking_block_follows_exact_curve() -> None:
+    """V = W (b/2 cos θ − h/2 sin θ) / (h cos θ + b sin θ) at the displacement of the row, not half a row earlier."""
     b, h = 0.5, 2.0
     beam = {"height": h, "mass": 500.0, "condition": "free", "drive": {"displacement": [0.45, 0], "at": h + 0.1}}
     size = {"block_width": b, "block_height": 0.1, "thickness": 0.3, "courses": [[1]]}
@@ -322,12 +322,12 @@ def test_a_block_rocks_along_its_exact_curve() -> None:
     u, found = outcome.curve.T
     error = np.abs(found - np.interp(u, moved, force))[u > 0.1 * u.max()] / force.max()
     assert error[:-11].max() < 1e-5
-    assert error.max() < 2e-3  # where it slows down
+    assert error.max() < 2e-3  # where the drive slows down
 
 
 @pytest.mark.parametrize("way", [5e-4, 1e-3])
-def test_how_the_dead_load_came_on_is_not_of_the_way(way: float) -> None:
-    """Half of what it works then is damped in a few steps, and not accounted for to what a short way takes."""
+def test_dead_load_application_is_excluded_from_energy_balance_of_drive(way: float) -> None:
+    """Half of its work is damped in a few steps; its energy error would be large against the work of a short drive."""
     beam = {"height": 0.2, "mass": 50.0, "force": [0, -2e4], "drive": {"displacement": [way, 0]}}
     size = {"block_width": 0.25, "block_height": 1.0, "thickness": 0.2, "courses": [[1]]}
     joint = {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "friction": 0.6}
@@ -336,15 +336,15 @@ def test_how_the_dead_load_came_on_is_not_of_the_way(way: float) -> None:
     brackets(outcome, (2e4 + 50 * 9.81) * 0.125 / 1.1 + weight * 0.125 / 1.1, 0.01)
 
 
-def test_a_thin_beam_does_not_say_how_far_a_collapse_is() -> None:
+def test_thin_beam_does_not_set_collapse_displacement() -> None:
     thin, none = block(beam={"height": 0.01}), block()
     assert thin.lowest_block == none.lowest_block
     assert thin.block_sizes.min() == none.block_sizes.min()
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
-def test_a_sliding_block_goes_round_a_loop_of_its_friction(model: Any) -> None:
-    """± μ N, and 4 μ N u for each round of amplitude u, the ledger closing in the run."""
+def test_cyclic_sliding_gives_friction_loop(model: Any) -> None:
+    """± μ N, and 4 μ N u per cycle of amplitude u; the energy balance closes."""
     path = [0.001, -0.001, 0.001, -0.001]
     outcome = model(under_beam("level", {"displacement": [path]}), 0.02)
     brackets(outcome, 0.6 * N, 0.02)
@@ -364,8 +364,8 @@ def test_a_sliding_block_goes_round_a_loop_of_its_friction(model: Any) -> None:
     assert not known["at rest"].any()
 
 
-def test_a_beam_of_fixed_height_makes_the_pier_a_strut() -> None:
-    """k = 1 / (2/k_t + 2 (h/b)²/k_n) of the two corners that it stands on; nothing gives way."""
+def test_fixed_height_beam_makes_pier_a_strut() -> None:
+    """k = 1 / (2/k_t + 2 (h/b)²/k_n) of the two corners in contact; nothing yields."""
     scene = under_beam("fixed-height", {"displacement": [1e-4, 0], "at": 0.72}, width=0.24, height=0.72)
     outcome = dem_dynamic(scene, 0.02)
     area, stiffness = 0.12 * 0.24 / 2, joint_stiffness(scene.joint)
@@ -378,8 +378,8 @@ def test_a_beam_of_fixed_height_makes_the_pier_a_strut() -> None:
 
 
 @pytest.mark.parametrize("system", [rigid_system, finite_system])
-def test_what_damped_a_beam_before_its_height_was_fixed_stays_in_the_ledger(system: Any) -> None:
-    """Of a sudden load half the work is damped, much of it in the beam's own fall."""
+def test_damped_work_is_kept_when_beam_height_is_fixed(system: Any) -> None:
+    """Half the work of a sudden load is damped, much of it in the beam's own descent."""
     run = Run(system(under_beam("fixed-height", {"displacement": [1e-4, 0]})))
     state = State.at_rest(run.system)
     run.hold(state, 0.0, 4000)
@@ -390,8 +390,8 @@ def test_what_damped_a_beam_before_its_height_was_fixed_stays_in_the_ledger(syst
     assert held.unaccounted(state) == pytest.approx(before, rel=1e-9)
 
 
-def test_the_rate_that_is_given_is_kept() -> None:
-    """Twice the time at half the rate; the bracket says what the rate does."""
+def test_given_drive_rate_is_kept() -> None:
+    """Twice the time at half the rate; the bracket shows the effect of the rate."""
     slow, fast = (
         dem_dynamic(under_beam("level", {"displacement": [0.0005, 0], "rate": rate}), 1e-6) for rate in (1e-3, 2e-3)
     )
@@ -403,8 +403,8 @@ def test_the_rate_that_is_given_is_kept() -> None:
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_heavy_beam_without_motion_presses_with_its_weight_and_a_light_one_with_none(model: Any) -> None:
-    """A lateral load does not push a beam of no mass: λ W = μ (W + N)."""
+def test_undriven_beam_presses_with_its_weight_if_it_has_mass(model: Any) -> None:
+    """A lateral load does not act on a beam without mass: λ W = μ (W + N)."""
     beam = {"height": 0.05, "condition": "level", "force": [0, -20.0]}
     light, heavy = (model(block(beam={**beam, "mass": mass}), 5e-3) for mass in (0.0, 6.0))
     weight = 9.81 * 1800 * 0.24 * 0.06 * 0.12
@@ -414,7 +414,7 @@ def test_a_heavy_beam_without_motion_presses_with_its_weight_and_a_light_one_wit
     assert "moves with the inertia" not in heavy.message
 
 
-def test_a_beam_stays_stiff_whatever_the_modes_of_blocks() -> None:
+def test_beam_stays_rigid_for_any_number_of_block_modes() -> None:
     wall = modal_wall(under_beam("fixed-height", DISPLACEMENT), modes="all")
     beam = wall.scene.beam
     assert beam is not None
@@ -425,8 +425,8 @@ def test_a_beam_stays_stiff_whatever_the_modes_of_blocks() -> None:
     assert not template.modes.inert.any()
 
 
-def test_a_moment_on_a_pinned_block_turns_it_in_modes_as_in_freedoms() -> None:
-    """The same acceleration along the load, f · M⁻¹ f, about a pinned corner."""
+def test_moment_accelerates_pinned_block_equally_in_modal_and_rigid_coordinates() -> None:
+    """The same acceleration in the direction of the load, f · M⁻¹ f, about a pinned corner."""
     changes = {"support__kind": "corners", "load__live": {"kind": "moment", "at": [0.1, 0.03], "moment": 2.0}}
     scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, block__young=1e10, **changes)
     rigid, modal = rigid_system(scene), system_of(modal_wall(scene, modes=3))
@@ -442,7 +442,7 @@ OAK = BlockMaterial(700.0, 1e10, 0.3, name="oak")
 
 
 def lintel(live: Settlement, materials: tuple[BlockMaterial, ...] = ()) -> Scene:
-    """A lintel of 1 m on piers of 0.3 m, 0.6 m apart; ground under the right one may move."""
+    """A lintel of 1 m on piers of 0.3 m, 0.6 m apart; the ground under the right pier may move."""
     corners = [(0.0, 0.0, 0.3, 0.5), (0.9, 0.0, 0.3, 0.5), (0.1, 0.5, 1.0, 0.2)]
     return build_scene(
         "lintel",
@@ -458,10 +458,8 @@ def lintel(live: Settlement, materials: tuple[BlockMaterial, ...] = ()) -> Scene
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("materials", [(), (OAK,)])
-def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
-    model: Any, materials: tuple[BlockMaterial, ...]
-) -> None:
-    """Between the left pier's inner edge and its own right end: W_l (0.6 − 0.3) / (1.1 − 0.3), and the pier."""
+def test_settling_pier_carries_lintel_by_lever_rule(model: Any, materials: tuple[BlockMaterial, ...]) -> None:
+    """Lintel between the left pier's inner edge and its own right end: W_l (0.6 − 0.3) / (1.1 − 0.3), plus the pier."""
     scene = lintel(Settlement(((0.75, -1.0), (2.0, 0.1)), (0.0, -1e-3)), materials)
     outcome = model(scene, 0.01)
     share = (scene.mass[1] + 0.375 * scene.mass[2]) / scene.mass[:3].sum()
@@ -469,14 +467,14 @@ def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
     assert outcome.multiplier == pytest.approx(share, rel=1e-5)
     assert outcome.curve[-1, 0] == pytest.approx(1e-3)
     half = (scene.mass[1] + scene.mass[2] / 2) / scene.mass[:3].sum()
-    assert outcome.curve[0, 1] == pytest.approx(half, rel=1e-3)  # at first
+    assert outcome.curve[0, 1] == pytest.approx(half, rel=1e-3)  # before the settlement
     turn = 1e-3 / 0.8
     moved = outcome.motion[2] / np.abs(outcome.motion[2, 2]) * turn
     assert moved[1:] == pytest.approx([-turn * 0.3, -turn], rel=1e-2)
 
 
 def flat_arch(live: Settlement) -> Scene:
-    """Three stones of a flat arch of 2 m, 0.5 m deep, their faces meeting 2 m below, between piers of 2 m."""
+    """Flat arch of three blocks, 2 m wide, 0.5 m deep, joints converging 2 m below, between piers of 2 m height."""
     cuts = np.linspace(-1.0, 1.0, 4)
     stones = [[(a, 0.0), (b, 0.0), (1.25 * b, 0.5), (1.25 * a, 0.5)] for a, b in pairwise(cuts)]
     pier = [(1.0, -2.0), (2.0, -2.0), (2.0, 0.5), (1.25, 0.5), (1.0, 0.0)]
@@ -492,8 +490,8 @@ def flat_arch(live: Settlement) -> Scene:
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_flat_arch_whose_thrust_is_its_least_from_the_start_has_its_answer(model: Any) -> None:
-    """Its pier has given way before it is moved: all that changes is what motion makes of the share, 2e-5 of it."""
+def test_flat_arch_with_minimum_thrust_from_start_has_limit_load(model: Any) -> None:
+    """The pier yields before it is moved: the share changes only by the effect of the displacement, 2e-5 of it."""
     scene = flat_arch(Settlement(((0.0, -3.0), (4.0, -1.9)), (0.03, 0.0)))
     outcome, exact = model(scene), limit(scene).multiplier
     assert exact is not None
@@ -502,10 +500,10 @@ def test_a_flat_arch_whose_thrust_is_its_least_from_the_start_has_its_answer(mod
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
-def test_what_stops_does_not_shake_friction_loose(model: Any) -> None:
-    """A lintel slides on its left pier, held by the right one, which turns about its toe with the ground.
+def test_stopping_support_does_not_release_friction(model: Any) -> None:
+    """A lintel slides on its left pier, held by the right one, which rotates about its toe with the ground.
 
-    Statics has the share where friction is all taken up; of supports that stop with a knock it was up to 4.5 % less.
+    Statics has the share at fully mobilized friction; with supports that stop abruptly it was up to 4.5 % smaller.
     """
     tables: dict[str, Any] = {
         "wall": {"thickness": 0.3, "block_width": 0.4, "block_height": 0.4, "courses": [[1, -4, 1], [1, -4, 1], [6]]},
@@ -529,8 +527,8 @@ def test_what_stops_does_not_shake_friction_loose(model: Any) -> None:
         {"load__live": {"kind": "settlement", "box": [[0.24, -1], [1, 0]], "by": [0, -1e-3]}},
     ],
 )
-def test_a_wall_of_many_blocks_is_led_as_from_equilibrium_to_equilibrium(led: dict[str, Any]) -> None:
-    """The bracket of motion holds the answer of statics, and so do the reactions at the end."""
+def test_driven_wall_agrees_with_static_model(led: dict[str, Any]) -> None:
+    """The dynamic bracket contains the static result, and the final reactions agree."""
     size = {"block_width": 0.24, "block_height": 0.12, "thickness": 0.12, "length": 0.48, "height": 0.96}
     scene = panel(wall=size, joint__mortar=MORTAR, **led)
     moving, still = dem_dynamic(scene, 0.02), dem_static(scene, 0.02)
@@ -545,8 +543,8 @@ def test_a_wall_of_many_blocks_is_led_as_from_equilibrium_to_equilibrium(led: di
     assert [ends[0][name] for name in vertical] == pytest.approx([ends[1][name] for name in vertical], rel=0.02)
 
 
-def test_the_work_of_a_moving_support_is_in_the_ledger() -> None:
-    """It takes what the dead load gives, but for what joints spend; moved back, it gives it again."""
+def test_energy_balance_includes_work_of_moving_support() -> None:
+    """The support takes up the work of the dead load less the joint dissipation; moved back, it returns that work."""
     scene = lintel(Settlement(((0.75, -1.0), (2.0, 0.1)), (0.0, -1e-3)))
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
@@ -560,20 +558,20 @@ def test_the_work_of_a_moving_support_is_in_the_ledger() -> None:
     assert run.system.motion_of_blocks(state.motion)[4] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_support_that_turns_moves_its_wall_with_it() -> None:
-    """A pier on ground that turns about its middle leans by its angle and bears on: the share is half its arm."""
+def test_rotating_support_rotates_its_wall() -> None:
+    """A pier on ground that rotates about the middle of its base rotates with it, and its support carries load."""
     scene = block(load__live={"kind": "settlement", "box": [[-1, -1], [1, 0]], "rotation_angle": 0.05})
     outcome = dem_dynamic(scene, 0.05)
     assert outcome.motion[0, 2] > 0
     assert outcome.status == "collapse", outcome.message
 
 
-# --- what is refused, and what ends a way --------------------------------------------------------------------
+# --- refused scenes, and the end of a drive ------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_wall_that_is_pushed_far_takes_no_beam(model: Any) -> None:
-    with pytest.raises(SceneError, match="beam: is not taken at finite displacements"):
+def test_finite_displacements_refuse_undriven_beam(model: Any) -> None:
+    with pytest.raises(SceneError, match="beam: is not supported at finite displacements"):
         model(block(beam={"height": 0.1}), displacements="finite")
 
 
@@ -586,7 +584,7 @@ def test_finite_displacements_refuse_joints_of_several_insets(model: Any) -> Non
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_finite_displacements_do_not_forget_what_holds_without_cohesion(model: Any) -> None:
+def test_finite_displacements_refuse_tensile_strength_without_cohesion(model: Any) -> None:
     """Joints without friction and cohesion may have a tensile strength."""
     scene = block().with_joint(friction=0.0, cohesion=0.0, tensile_strength=1e4)
     with pytest.raises(SceneError, match="joint.tensile_strength = 10000.0: finite displacements need dry joints"):
@@ -601,14 +599,14 @@ def test_finite_displacements_do_not_forget_what_holds_without_cohesion(model: A
         {"beam": {"height": 0.1}, "tie": [TIE]},
     ],
 )
-def test_cracks_between_all_triangles_refuse_what_they_would_tear(extra: dict[str, Any]) -> None:
+def test_cracks_between_all_triangles_refuse_ties_and_moving_supports(extra: dict[str, Any]) -> None:
     scene = block(inner_joint={"friction": 0.6, "mortar": MORTAR}, **extra)
     with pytest.raises(SceneError, match='does not go with cracks = "blocks"'):
         pieces(scene, wall_mesh(scene, 1), "blocks")
 
 
 @pytest.mark.parametrize(("after", "rows"), [(1, 0), (12, 111)])
-def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int) -> None:
+def test_interrupt_keeps_curve_so_far(after: int, rows: int) -> None:
     seen: list[float] = []
 
     def stop(run: Run, state: State, multiplier: float) -> None:
@@ -622,8 +620,8 @@ def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int) -> None:
     assert len(outcome.curve) == len(outcome.path) == rows
 
 
-def test_a_recorder_keeps_the_way_that_counts() -> None:
-    """Frames of the last way alone, from rest to the displacement asked for."""
+def test_recorder_keeps_frames_of_last_drive() -> None:
+    """Only frames of the last drive, from rest to the requested displacement."""
     scene = under_beam("level", {"displacement": [0.001, 0]})
     recorder = MotionRecorder(scene, None)
     outcome = dem_dynamic(scene, observe=recorder)
@@ -636,8 +634,8 @@ def test_a_recorder_keeps_the_way_that_counts() -> None:
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_frames_of_a_settlement_are_of_the_share_that_its_support_bears(model: Any) -> None:
-    """Half of the block's weight at rest, the same as the rows of the curve from there on."""
+def test_settlement_frames_report_share_on_support(model: Any) -> None:
+    """Half of the block's weight at rest, and then the values of the curve's rows."""
     live = {"kind": "settlement", "box": [[0.12, -1.0], [1.0, 0.0]], "by": [0, -1e-3]}
     scene = block(load__live=live)
     recorder = MotionRecorder(scene, None)
@@ -652,7 +650,7 @@ def test_frames_of_a_settlement_are_of_the_share_that_its_support_bears(model: A
     ("force", "expected"),
     [([1.0, 2.0, 3.0], False), ([1.0, 3.0, 2.0], True), ([2.0, 3.0, 3.001], True), ([0.0, 0.0, 0.0], True)],
 )
-def test_a_mechanism_has_formed_where_the_force_no_longer_grows(force: list[float], expected: bool) -> None:
+def test_mechanism_has_formed_if_force_no_longer_grows(force: list[float], expected: bool) -> None:
     x: Array = np.array([0.0, 0.5, 1.0])
     assert formed(np.column_stack([x, force]), 0.01, settles=False) == expected
 
@@ -664,14 +662,14 @@ def test_a_mechanism_has_formed_where_the_force_no_longer_grows(force: list[floa
         *[([1.0, 0.0], False), ([-2.0, 0.1, -4.0], False), ([0.0], False), ([], False)],
     ],
 )
-def test_a_way_that_goes_on_or_comes_back_to_rest_does_not_go_the_other_way(goals: list[float], expected: bool) -> None:
-    """It was said to, of cycles to one side, whose unloading friction resists as well."""
+def test_one_sided_drive_path_does_not_go_both_ways(goals: list[float], expected: bool) -> None:
+    """One-sided cycles were once taken for two-sided ones, because friction resists unloading too."""
     assert goes_both_ways(np.array(goals)) == expected
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
-def test_a_wall_that_does_without_the_support_that_sinks_bridges_it(model: Any) -> None:
-    """The block's weight is over the ground that stays."""
+def test_wall_that_needs_no_sinking_support_bridges_it(model: Any) -> None:
+    """The block's centroid is above the ground that does not move."""
     box = [[-1.0, -1.0], [0.06, 0.0]]
     outcome = model(block(load__live={"kind": "settlement", "box": box, "by": [0, -1e-3]}))
     assert outcome.status == "unbounded"
@@ -680,8 +678,8 @@ def test_a_wall_that_does_without_the_support_that_sinks_bridges_it(model: Any) 
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
-def test_a_support_that_turns_from_under_a_wall_is_bridged_though_its_pivot_bears(model: Any) -> None:
-    """The block stands on what stays, and on the point about which the rest turns away, which does no work."""
+def test_support_rotating_away_is_bridged_although_its_pivot_carries_load(model: Any) -> None:
+    """The block stands on the fixed ground and on the pivot of the rotating ground, which does no work."""
     live = {"kind": "settlement", "box": [[0.14, -1.0], [1.0, 0.0]], "rotation_angle": -0.5, "about": [0.14, 0.0]}
     outcome = model(block(load__live=live))
     assert outcome.status == "unbounded", outcome.message
@@ -690,8 +688,8 @@ def test_a_support_that_turns_from_under_a_wall_is_bridged_though_its_pivot_bear
 
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
 @pytest.mark.parametrize("sinks", [1e-9, 1e-7])
-def test_a_support_that_still_sheds_load_elastically_is_no_answer(model: Any, sinks: float) -> None:
-    """Half a panel's ground sinks by less than closes its joints: the share falls, hardly or by a tenth, to the end."""
+def test_support_still_shedding_load_elastically_is_undecided(model: Any, sinks: float) -> None:
+    """Half of the ground sinks by less than joints are compressed: its share falls, slightly or by 1/10, to the end."""
     box = [[0.72, -1.0], [3.0, 0.0]]
     live = {"kind": "settlement", "box": box, "by": [0, -sinks]}
     outcome = model(panel(joint__mortar=MORTAR, block__young=1e12, block__poisson=0.2, load__live=live))
@@ -702,8 +700,8 @@ def test_a_support_that_still_sheds_load_elastically_is_no_answer(model: Any, si
 
 
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic])
-def test_a_support_that_comes_back_takes_up_load_and_bears_no_less_than_where_it_ends(model: Any) -> None:
-    """Half a panel's ground sinks and comes back to where it was: beyond, it would bear more, up to its own share."""
+def test_returning_support_takes_up_load_and_gives_lower_bound(model: Any) -> None:
+    """Half of the ground sinks and returns; moved farther up, it would carry more, up to its own share."""
     live = {"kind": "settlement", "box": [[0.72, -1.0], [3.0, 0.0]], "by": [0, -1e-6], "path": [1, 0]}
     outcome = model(panel(joint__mortar=MORTAR, block__young=1e12, block__poisson=0.2, load__live=live))
     assert outcome.status == "undecided", outcome.message
@@ -714,10 +712,10 @@ def test_a_support_that_comes_back_takes_up_load_and_bears_no_less_than_where_it
     assert outcome.curve[-1, 1] > outcome.curve[:, 1].min()
 
 
-def test_works_to_and_fro_are_no_small_sum_to_miss_a_share_of() -> None:
-    """A block over ground that rises and goes back twice: the ground that is left bears what it did.
+def test_energy_error_of_cycles_is_relative_to_work_of_each_leg() -> None:
+    """A block over ground that rises and returns twice: the remaining ground carries what it did before.
 
-    The works of a cycle cancel: a millijoule that the ledger misses of the 6.5 J of a leg was a share of their sum.
+    The works of a cycle cancel: an error of 1 mJ in the 6.5 J of one leg was a large share of their sum.
     """
     wall = Wall.from_dict(
         {
@@ -746,8 +744,8 @@ def test_works_to_and_fro_are_no_small_sum_to_miss_a_share_of() -> None:
 
 
 @pytest.mark.parametrize("to", [1.0, -1.0])
-def test_a_bonded_pier_whose_pressed_corner_passes_that_of_the_beam_makes_up_no_energy(to: float) -> None:
-    """Its side takes over from the beam's where corners lie deep in each other: it shook there without end."""
+def test_bonded_pier_gains_no_energy_when_its_corner_passes_beam_corner(to: float) -> None:
+    """Contact passes from the beam's side to the pier's at deeply overlapping corners, where it vibrated endlessly."""
     size = {"length": 0.2, "height": 0.4, "block_width": 0.2, "block_height": 0.4, "thickness": 0.1}
     joint = {"friction": 0.75, "cohesion": 1e6, "tensile_strength": 3e5, "fracture_energy_1": 50.0}
     joint |= {"fracture_energy_2": 100.0, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
@@ -763,11 +761,11 @@ def test_a_bonded_pier_whose_pressed_corner_passes_that_of_the_beam_makes_up_no_
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated, dem_static, *MODELS])
 @pytest.mark.parametrize(("glue", "exact"), [(0.5, -0.5), (4.0, -3.0)])
-def test_a_support_that_is_glued_to_the_wall_drags_at_it(model: Any, glue: float, exact: float) -> None:
-    """A block of weight W whose left quarter, where the ground sinks, is glued to it with T, the rest dry.
+def test_bonded_support_pulls_on_wall(model: Any, glue: float, exact: float) -> None:
+    """A block of weight W, the left quarter of which is bonded with strength T to sinking ground, the rest dry.
 
-    The glue tears, and the block stays: λ W = −T. Or the block turns up about the edge of what stays, its left corner
-    with the ground: half the glue's strength and the weight, as far from the edge, λ W = −(T / 2 + W).
+    Either the bond fails and the block stays, λ W = −T, or the block rotates about the edge of the fixed ground, its
+    left corner moving with the ground: half the bond and the weight at equal arms, λ W = −(T / 2 + W).
     """
     width, thickness, weight = 0.06, 0.12, 0.24 * 0.06 * 0.12 * 1800.0 * 9.81
     strength = glue * weight / (width * thickness)

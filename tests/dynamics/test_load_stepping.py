@@ -1,4 +1,4 @@
-"""The search by steps of constant load, whatever the wall says to each of them."""
+"""Search for the limit load by steps of constant load, for any sequence of verdicts."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -36,7 +36,7 @@ ELASTIC = "has_lost_nothing_since"
 def searched(
     answer: Callable[[float], Verdict], tolerance: float = 0.005, bound: float | None = None, run: Run = BLOCK
 ) -> tuple[LoadSteps, list[float]]:
-    """Search on a wall that gives an answer to each load, and the loads that were tried."""
+    """Search on a fictitious wall with a given verdict for each load, and the loads that were tried."""
     tried: list[float] = []
 
     def hold_load(run: Run, state: object, multiplier: float, *_: object) -> tuple[Verdict, Array | None]:
@@ -50,8 +50,8 @@ def searched(
         return load_steps(run, FIRST, tolerance, Criteria(collapse=1.0), most=10.0, bound=bound), tried
 
 
-def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
-    """Panel 11 neither rested nor fell at 0.25, fell just above it and just below it; that was tried for ever."""
+def test_search_ends_with_collapse_on_both_sides_of_undecided_load() -> None:
+    """Panel 11 was undecided at 0.25 and collapsed just above and just below it; the search tried 0.25 endlessly."""
 
     def answer(multiplier: float) -> Verdict:
         if round(multiplier, 6) == 0.25:
@@ -66,8 +66,8 @@ def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
     assert found.upper - found.lower <= 0.005 * found.upper
 
 
-def test_a_block_that_nothing_holds_and_that_drifts_away_is_named() -> None:
-    """Of two blocks without weight, side by side, all loads are on one, which pushes the other off its bed."""
+def test_message_names_unrestrained_block_that_drifts_away() -> None:
+    """Two weightless blocks side by side: all loads act on one, which pushes the other off its bed joint."""
     live = {"kind": "point", "at": [0.24, 0.2], "force": [18.0, -6.0]}
     dead = {"kind": "point", "at": [0.48, 0.2], "force": [-6.0, -220.0]}
     scene = courses(
@@ -79,12 +79,12 @@ def test_a_block_that_nothing_holds_and_that_drifts_away_is_named() -> None:
     )
     outcome = dem_dynamic(scene)
     assert outcome.status == "undecided"
-    assert "it bore every load tried" in outcome.message
-    assert "at which block 4 at (0.8, 0.15) has come 1 m" in outcome.message
+    assert "it carried every load tried" in outcome.message
+    assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
 
 
-def test_a_wall_without_weight_takes_loads_that_are_put_on_at_once() -> None:
-    """As the study of loading rates does: a block pressed on its base bears each in one step."""
+def test_weightless_wall_carries_suddenly_applied_loads() -> None:
+    """As in the study of loading rates: a block pressed on its base carries each load, applied in one step."""
     first = 1e-3 / WEIGHTLESS.system.measure(WEIGHTLESS.system.live)
     found = load_steps(WEIGHTLESS, first, 0.005, Criteria(collapse=1.0), most=10 * first, loading=0)
     assert found.verdict == "stable"
@@ -92,8 +92,8 @@ def test_a_wall_without_weight_takes_loads_that_are_put_on_at_once() -> None:
     assert 5 * first < found.lower <= 10 * first
 
 
-def test_the_bracket_closes_in_on_loads_without_an_answer() -> None:
-    """Loads about the collapse neither hold nor fall: the bracket is theirs, and no answer."""
+def test_bracket_closes_around_undecided_loads() -> None:
+    """Loads near collapse are undecided: the bracket encloses them, and the verdict is undecided."""
 
     def answer(multiplier: float) -> Verdict:
         return "stable" if multiplier < 0.422 else "collapse" if multiplier > 0.427 else "undecided"
@@ -107,8 +107,8 @@ def test_the_bracket_closes_in_on_loads_without_an_answer() -> None:
     assert sum(answer(multiplier) == "undecided" for multiplier in tried) <= 4
 
 
-def test_a_narrow_band_without_an_answer_is_none_though_the_last_load_gave_one() -> None:
-    """Closed in on from both sides, to a quarter of the tolerance."""
+def test_narrow_undecided_band_is_not_reported_as_collapse() -> None:
+    """The band is enclosed from both sides to a quarter of the tolerance; the last load's verdict does not count."""
     band = 0.317, 0.317 * 1.004
 
     def answer(multiplier: float) -> Verdict:
@@ -125,8 +125,8 @@ def test_a_narrow_band_without_an_answer_is_none_though_the_last_load_gave_one()
 
 
 @pytest.mark.parametrize("most", [0.2, 0.3, 1.0, 3.7])
-def test_no_load_far_above_a_proved_bound_is_tried(most: float) -> None:
-    """A wall that falls just below the bound: trials above it by half the tolerance at most, a bracket as narrow."""
+def test_no_load_far_above_upper_bound_is_tried(most: float) -> None:
+    """Collapse just below the bound: trials exceed it by at most half the tolerance, and the bracket is as narrow."""
     found, tried = searched(lambda load: "stable" if load < 0.99 * most else "collapse", bound=most)
     assert max(tried) <= most * (1 + 0.005 / 2) * (1 + 1e-12)
     assert found.lower is not None
@@ -134,17 +134,17 @@ def test_no_load_far_above_a_proved_bound_is_tried(most: float) -> None:
     assert found.lower < 0.99 * most <= found.upper <= found.lower / (1 - 0.005)
 
 
-def test_a_bound_that_the_wall_bears_all_the_same_does_not_end_the_search() -> None:
+def test_search_continues_above_bound_that_wall_carries() -> None:
     found, tried = searched(lambda load: "stable" if load < 0.5 else "collapse", bound=0.2)
     assert found.lower == pytest.approx(0.5, rel=0.005)
     assert len(tried) < 60
 
 
-def test_a_wall_is_loaded_at_once_as_far_as_it_is_elastic() -> None:
-    """A glued block that bears some λ: from a quarter of it to the half, put on at once, it swings to three quarters.
+def test_elastic_wall_is_loaded_suddenly() -> None:
+    """A bonded block with limit load λ: a sudden step from λ / 4 to λ / 2 swings to 3 λ / 4.
 
-    So the last load before which nothing is lost is more than a quarter; the block rests there as under a load that
-    grows slowly.
+    So the last load before any joint loses strength exceeds λ / 4, and the block comes to the same rest there as under
+    a slowly growing load.
     """
     scene = panel(**SIZE, joint__cohesion=1e5, joint__tensile_strength=1e5)
     run = Run(rigid_system(scene))
@@ -168,8 +168,8 @@ def test_a_wall_is_loaded_at_once_as_far_as_it_is_elastic() -> None:
 
 
 @pytest.mark.parametrize("again", ["stable", "collapse", "undecided"])
-def test_a_wall_without_weight_is_brought_to_its_fall_from_the_largest_load_it_bore(again: Verdict) -> None:
-    """A load under which it falls from far away: where it bears it from near by, the search goes on."""
+def test_weightless_wall_is_brought_to_collapse_from_largest_load_carried(again: Verdict) -> None:
+    """Collapse after a large load step is repeated from the largest load carried; if carried, the search goes on."""
     hasty: list[float] = []
 
     def answer(multiplier: float) -> Verdict:
@@ -196,8 +196,8 @@ def test_a_wall_without_weight_is_brought_to_its_fall_from_the_largest_load_it_b
         assert found.upper == hasty[-1]
 
 
-def test_a_load_grows_faster_far_below_its_bound_and_where_the_wall_is_as_stiff_as_at_first() -> None:
-    """A block that does not slide yet: slowly in the first look alone, and not even there below a bound."""
+def test_load_grows_faster_below_bound_and_while_wall_is_elastic() -> None:
+    """A block that does not slide yet: slow growth only up to the first check, and below a bound not even there."""
     for far, slowly in ((0.0, 1 / LOOKS), (0.3, 0.0)):
         grows, start = Growth(BLOCK, Criteria(collapse=1.0), far, 80_000.0), State.at_rest(BLOCK.system)
         reached, state = grows.up_to(0.3, start, 0.0, 80_000.0)
@@ -206,8 +206,8 @@ def test_a_load_grows_faster_far_below_its_bound_and_where_the_wall_is_as_stiff_
         assert state.steps == grows.steps == pytest.approx(80_000 * (slowly + (1 - slowly) / FASTER))
 
 
-def test_a_load_that_makes_a_wall_give_way_grows_slowly_and_no_more_once_it_has() -> None:
-    """Sliding at 0.6: the look of that load is gone through anew, slowly, to the last bit, and nothing is after it."""
+def test_load_that_makes_wall_yield_is_repeated_slowly_and_stops() -> None:
+    """Sliding at 0.6: the interval of that load is repeated slowly, with bitwise the same result, and growth ends."""
     grows = Growth(BLOCK, Criteria(collapse=1e-3), 0.0, 80_000.0)
     reached, fallen = grows.up_to(3.0, State.at_rest(BLOCK.system), 0.0, 80_000.0)
     assert (reached, grows.slow) == (0.75, 0.375)
@@ -218,8 +218,8 @@ def test_a_load_that_makes_a_wall_give_way_grows_slowly_and_no_more_once_it_has(
     assert slowly == 20_000 + 10_000 // FASTER
 
 
-def test_a_load_that_has_been_grown_through_is_not_grown_to_again() -> None:
-    """Of the loads that bisect the step of the first fall, three were looked at on the way."""
+def test_checked_load_is_not_approached_again() -> None:
+    """Three of the loads that bisect the step of the first collapse were already checked during growth."""
     with patch.object(Growth, "up_to", autospec=True, side_effect=Growth.up_to) as grown:
         found, tried = searched(lambda load: "stable" if load < 0.5 else "collapse")
     assert found.lower == pytest.approx(0.5, rel=0.005)
@@ -231,8 +231,8 @@ def test_a_load_that_has_been_grown_through_is_not_grown_to_again() -> None:
 
 @given(pauses=st.lists(st.booleans(), min_size=1, max_size=30), stop=st.floats(0.06, 3.0))
 @settings(max_examples=200)
-def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: list[bool], stop: float) -> None:
-    """Paused or not: it comes to the load itself, or to less where it falls on the way."""
+def test_weightless_wall_is_never_loaded_beyond_requested_load(pauses: list[bool], stop: float) -> None:
+    """Paused or not, the load reaches the requested value, or less if the wall collapses on the way."""
     answers = iter(pauses)
     state = State.at_rest(WEIGHTLESS.system)
     with (
@@ -245,15 +245,15 @@ def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: lis
     assert (reached == stop) == all(pauses[:-1])
 
 
-def test_a_wall_that_never_answers_costs_two_budgets() -> None:
+def test_always_undecided_wall_costs_two_budgets() -> None:
     found, tried = searched(lambda multiplier: "undecided")
     assert (found.lower, found.upper, found.verdict, len(tried)) == (0.0, None, "undecided", 2)
 
 
 @given(st.data(), st.sampled_from([0.0005, 0.005, 0.05, 0.5]))
 @settings(max_examples=300)
-def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: float) -> None:
-    """Each load that is tried lies inside the bracket so far, which never widens."""
+def test_search_ends_for_any_verdicts(data: st.DataObject, tolerance: float) -> None:
+    """Each trial load lies inside the current bracket, which never widens."""
     lower, upper = 0.0, float("inf")
 
     def answer(multiplier: float) -> Verdict:
@@ -274,8 +274,8 @@ def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: floa
         assert upper - lower <= max(tolerance * upper, narrowest)
 
 
-def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farther() -> None:
-    """Rests move the block by ten times what falls do: the live load does positive work on it all the same."""
+def test_mechanism_is_motion_of_collapse_not_of_later_rest() -> None:
+    """Rests move the block ten times as far as collapses do, and the live load does positive work on both."""
     push = np.sign(BLOCK.system.live)
 
     def hold_load(run: Run, state: State, multiplier: float, *_: object) -> tuple[Verdict, Array | None]:
@@ -297,8 +297,8 @@ def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farthe
 
 
 @pytest.mark.parametrize("energy", [None, 50.0])
-def test_only_joints_that_lose_strength_are_said_to_break(energy: float | None) -> None:
-    """What is crushed, however far, bears as much as before; a step that overshoots takes no load from it."""
+def test_note_on_breaking_joints_only_if_strength_is_lost(energy: float | None) -> None:
+    """Plastic crushing keeps the strength, so an overshoot does not reduce the load that the wall carries."""
     crushing = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9, "joint__compressive_strength": 1e5}
     size = {"wall__length": 0.24, "wall__height": 0.48, "wall__block_height": 0.48}
     softening = {} if energy is None else {"joint__compressive_fracture_energy": energy}
@@ -308,7 +308,7 @@ def test_only_joints_that_lose_strength_are_said_to_break(energy: float | None) 
 
 
 def tapered_wall(folder: Path, along: float) -> Scene:
-    """A glued wall on one in weak mortar, 1.25 m wide at its foot, pressed down near a corner of its narrower top."""
+    """Bonded wall on a wall in weak mortar, 1.25 m wide at its foot, pressed down near a corner of its narrower top."""
     length, height, course = 1.25, 3.0, 0.5
     outlines = [[(-1.0, -1.0), (2.0, -1.0), (2.0, 0.0), (-1.0, 0.0)]]
 
@@ -336,10 +336,10 @@ def tapered_wall(folder: Path, along: float) -> Scene:
 
 
 @pytest.mark.parametrize("along", [0.95, 0.97])
-def test_a_wall_that_sways_under_each_load_is_not_said_to_fall(along: float, tmp_path: Path) -> None:
-    """Where its joints have opened it is soft: a step of the load moves it farther than what is a fall of others.
+def test_wall_swaying_under_each_load_step_is_not_collapse(along: float, tmp_path: Path) -> None:
+    """With open joints the wall is soft: a load step moves it farther than the collapse of other walls.
 
-    It was said to fall at two thirds of its load, and at a third.
+    Collapse was reported at two thirds, and at a third, of its limit load.
     """
     scene = tapered_wall(tmp_path, along)
     exact, found = dem_static(scene), dem_dynamic(scene)

@@ -1,4 +1,4 @@
-"""Walls that live loads push far: blocks about their toes, walls from the load of limit analysis on, what ends them."""
+"""Walls pushed far by live loads: blocks rotating about their toes, walls from their limit load on, how pushes end."""
 
 import math
 from dataclasses import replace
@@ -30,7 +30,7 @@ TOE = np.array([WIDTH, 0.0])
 
 
 def about_its_toe(at: Array, angle: float) -> Array:
-    """Where a point of a block is from its toe, about which that has turned clockwise."""
+    """Position of a point of a block relative to the toe about which the block has turned clockwise."""
     c, s = math.cos(angle), math.sin(angle)
     return np.asarray(np.array([[c, s], [-s, c]]) @ (at - TOE))
 
@@ -40,17 +40,17 @@ def slender(live: dict[str, Any] | list[dict[str, Any]]) -> Scene:
 
 
 def angles(curve: Array, at: Array, direction: Array) -> Array:
-    """Rotations at which a point of the block has gone by the displacements of a curve along a direction."""
+    """Rotations at which a point of the block has the displacements of a curve in a direction."""
     every = np.linspace(0.0, math.atan(WIDTH / HEIGHT) + 0.05, 2000)
     gone = [(about_its_toe(at, angle) - (at - TOE)) @ direction for angle in every]
     return np.interp(curve[:, 0], gone, every)
 
 
 def follows(outcome: Outcome, exact: Array) -> None:
-    """As exact at every row: to the tolerance while the push gathers speed, and to 5e-4 from there to the brink."""
+    """Agrees at every row: to the tolerance while the push accelerates, then to 5e-4 until the load vanishes."""
     moved, load = outcome.curve.T
     brackets(outcome, exact[0], 5e-3)
-    given = moved > 1e-5  # before that the joint gives
+    given = moved > 1e-5  # before that the joint deforms elastically
     assert load[given] == pytest.approx(exact[given], abs=5e-3 * exact[0])
     steady = moved > 0.6 * moved[-1]
     assert steady.sum() > 30
@@ -58,8 +58,8 @@ def follows(outcome: Outcome, exact: Array) -> None:
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_block_is_pushed_by_its_weight_until_it_stands_on_its_corner(model: Any) -> None:
-    """λ = tan(α − θ), tan α = b / h, and nothing once the corner above the toe has gone by h sin α."""
+def test_lateral_push_of_block_follows_tan_until_balance_on_corner(model: Any) -> None:
+    """λ = tan(α − θ), tan α = b / h; zero once the corner above the toe has moved by h sin α."""
     outcome = model(slender({"kind": "lateral"}), 0.005, displacements="finite")
     corner, alpha = np.array([WIDTH, HEIGHT]), math.atan(WIDTH / HEIGHT)
     follows(outcome, np.tan(alpha - angles(outcome.curve, corner, np.array([1.0, 0.0]))))
@@ -68,8 +68,8 @@ def test_a_block_is_pushed_by_its_weight_until_it_stands_on_its_corner(model: An
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_force_at_a_point_goes_along_with_it(model: Any) -> None:
-    """Pushed at the corner farther from the toe, which rises: λ F (its height) = W (arm of the middle)."""
+def test_point_force_follows_its_material_point(model: Any) -> None:
+    """Pushed at the corner farther from the toe, which rises: λ F (its height) = W (arm of the centroid)."""
     at, middle, direction = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
     scene = slender({"kind": "point", "at": at.tolist(), "force": direction.tolist()})
     outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
@@ -79,7 +79,7 @@ def test_a_force_at_a_point_goes_along_with_it(model: Any) -> None:
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_a_couple_is_the_same_however_far_its_block_has_turned(model: Any) -> None:
+def test_couple_does_not_depend_on_block_rotation(model: Any) -> None:
     middle = np.array([WIDTH / 2, HEIGHT / 2])
     scene = slender({"kind": "moment", "at": middle.tolist(), "moment": -1.0})
     outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
@@ -88,8 +88,8 @@ def test_a_couple_is_the_same_however_far_its_block_has_turned(model: Any) -> No
     follows(outcome, np.array(exact))
 
 
-def test_a_wall_peaks_at_the_load_of_limit_analysis_and_bears_less_and_less() -> None:
-    """The smallest that is certified; limit analysis whose slip opens joints has a quarter more."""
+def test_wall_peaks_at_limit_load_and_then_softens() -> None:
+    """The smallest certified load of non-associated limit analysis; the associated one is a quarter larger."""
     scene = panel(wall__length=0.36, wall__height=0.36, joint__friction=1.2, joint__mortar=MORTAR)
     outcome = dem_dynamic(scene, displacements="finite", distance=0.02)
     exact = limit_nonassociated(scene).multiplier
@@ -98,7 +98,7 @@ def test_a_wall_peaks_at_the_load_of_limit_analysis_and_bears_less_and_less() ->
     peak = int(outcome.curve[:, 1].argmax())
     assert np.diff(outcome.curve[peak:, 1]).max() < 1e-3 * exact
     assert outcome.curve[-1, 1] < 0.95 * exact
-    # Its mechanism is that of the wall as built, in which nothing overlaps; its curve falls where all can see it.
+    # The mechanism is that of the wall as built, without overlap; the fall of the curve shows on a linear axis.
     jumps = jump_operator(wall_points(scene), scene.blocks.centroid).opening @ outcome.motion.ravel()
     assert jumps.min() > -0.01
     axes = Figure().add_subplot()
@@ -106,21 +106,21 @@ def test_a_wall_peaks_at_the_load_of_limit_analysis_and_bears_less_and_less() ->
     assert axes.get_xscale() == "linear"
 
 
-def test_the_ground_bears_the_push_and_the_weight() -> None:
+def test_ground_reactions_balance_push_and_weight() -> None:
     scene = panel(wall__length=0.36, wall__height=0.36, joint__mortar=MORTAR)
     outcome = dem_dynamic(scene, 0.02, displacements="finite", distance=0.01)
     weight = 9.81 * scene.mass[~scene.fixed].sum()
     columns = [*outcome.path_columns]
     along, up = (outcome.path[20:, columns.index(f"ground {axis} [N]")] for axis in ("horizontal", "vertical"))
-    assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # a moment's, and a row's mean
+    assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # instant against row mean
     assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=0.01)
     assert up.mean() == pytest.approx(weight, rel=0.01)
 
 
-def test_a_push_is_the_same_whatever_the_unit_of_its_load(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As many steps, and as many looks at how far blocks have come; λ is one over the unit, to the last bit.
+def test_push_does_not_depend_on_load_unit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many steps and contact updates, and λ scales with 1 / unit, bit for bit.
 
-    So it is for a unit that is a power of two, which leaves all digits as they are.
+    This holds for a unit that is a power of two, which leaves all digits unchanged.
     """
     looks, look = [0], ContactUpdate.steps_until_next_look
 
@@ -141,14 +141,14 @@ def test_a_push_is_the_same_whatever_the_unit_of_its_load(monkeypatch: pytest.Mo
     assert told[0][0] == "collapse"
 
 
-def test_a_push_ends_where_it_is_asked_to() -> None:
-    """Within a row of a two hundredth of it."""
+def test_push_ends_at_requested_distance() -> None:
+    """To within one row, which is 1/200 of the distance."""
     outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=0.004)
     assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.01)
 
 
-def test_ctrl_c_leaves_the_last_push_that_came_to_its_end() -> None:
-    """In the second one, which has hardly begun."""
+def test_interrupt_keeps_last_complete_push() -> None:
+    """Interrupted in the second push, just after its start."""
     pushes: list[float] = []
 
     def stop(run: Run, state: State, multiplier: float) -> None:
@@ -162,8 +162,8 @@ def test_ctrl_c_leaves_the_last_push_that_came_to_its_end() -> None:
     assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.05)
 
 
-def test_a_wall_that_falls_as_the_push_gathers_speed_is_followed_no_further() -> None:
-    """It leans by a twentieth of the distance: where its load comes to nothing is told all the same."""
+def test_push_ends_if_wall_falls_while_push_accelerates() -> None:
+    """The block topples within a twentieth of the distance; the message still reports where its load vanishes."""
     outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=20 * WIDTH)
     brink = HEIGHT * math.sin(math.atan(WIDTH / HEIGHT))
     assert outcome.curve[-1, 0] == pytest.approx(brink, rel=0.02)
@@ -171,15 +171,15 @@ def test_a_wall_that_falls_as_the_push_gathers_speed_is_followed_no_further() ->
     assert (outcome.curve[:-1, 1] >= 0).all()
 
 
-def test_a_distance_that_no_wall_goes_is_no_other_push() -> None:
-    """It is not begun so fast that its peak is missed: a hundred metres were, whose bracket did not have tan α."""
+def test_unreachable_distance_does_not_change_push() -> None:
+    """The push must not start so fast that it misses the peak: for 100 m the bracket did not contain tan α."""
     near, far = (dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=d) for d in (None, 100.0))
     assert np.array_equal(near.curve, far.curve)
     brackets(far, WIDTH / HEIGHT, 0.01)
 
 
 @pytest.mark.parametrize(("peak", "said"), [(8.9e-5, "the peak is at 8.9e-05 m: a shorter distance"), (0.01, "")])
-def test_a_peak_at_the_very_beginning_asks_for_a_shorter_way(peak: float, said: str) -> None:
+def test_message_asks_for_shorter_distance_if_peak_is_at_start(peak: float, said: str) -> None:
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
     for side in (1.0, -1.0):
@@ -188,8 +188,8 @@ def test_a_peak_at_the_very_beginning_asks_for_a_shorter_way(peak: float, said: 
         assert bool(lead.remedy(curve)) == bool(said)
 
 
-def test_a_wall_that_falls_onto_the_ground_tells_the_peak_before_it() -> None:
-    """A slab on a pier tips at W a / c, and bears far more once its corner stands on the ground."""
+def test_message_reports_peak_before_wall_lands_on_ground() -> None:
+    """A slab on a pier tips at W a / c, and carries far more once its corner rests on the ground."""
     at_end = {"kind": "point", "at": [0.6, 0.2], "force": [0.0, -1.0]}
     scene = courses([[1], [1.5]], 0.4, 0.1, joint__mortar=MORTAR, load__live=at_end)
     outcome = dem_dynamic(scene, 0.2, displacements="finite")
@@ -200,27 +200,27 @@ def test_a_wall_that_falls_onto_the_ground_tells_the_peak_before_it() -> None:
     assert "had fallen" not in alone.message
 
 
-def test_a_wall_that_locks_is_not_pushed_through_the_ground() -> None:
+def test_locked_wall_is_unbounded() -> None:
     outcome = dem_dynamic(block(load__live={"kind": "body", "acceleration": [0, -9.81]}), displacements="finite")
     assert outcome.status == "unbounded", outcome.message
     assert "more than 20 times its largest dead load" in outcome.message
     assert abs(outcome.curve[:, 0]).max() < 1e-3
 
 
-def test_what_nothing_resists_falls_under_no_load() -> None:
+def test_frictionless_block_collapses_at_zero_load() -> None:
     outcome = dem_dynamic(slender({"kind": "lateral"}).with_joint(friction=0.0), displacements="finite")
     assert outcome.status == "collapse", outcome.message
     assert outcome.multiplier == pytest.approx(0.0, abs=1e-4)
 
 
-def test_what_is_crushed_under_its_dead_load_is_pushed_at_a_point_as_well() -> None:
-    """The dead load comes slowly there. The toe bears with all its strength: λ F h = W (b − W / f t) / 2."""
+def test_block_with_crushing_toe_pushed_at_point() -> None:
+    """The dead load is applied slowly. The toe is at its full strength f: λ F h = W (b − W / f t) / 2."""
     at, crushing = {"kind": "point", "at": [0.0, HEIGHT], "force": [1.0, 0.0]}, 6000.0
     scene = block(WIDTH, HEIGHT, joint__friction=1.4, joint__compressive_strength=crushing, load__live=at)
     weight = 9.81 * scene.mass[0]
     outcome = dem_dynamic(scene, displacements="finite", distance=0.01)
     exact = weight * (WIDTH - weight / (crushing * 0.12)) / 2 / HEIGHT
-    assert outcome.multiplier == pytest.approx(exact, rel=0.05)  # on its points joints crush to 3 to 5 %
+    assert outcome.multiplier == pytest.approx(exact, rel=0.05)  # the joint points resolve crushing to 3 to 5 %
 
 
 @pytest.mark.parametrize(
@@ -234,10 +234,8 @@ def test_what_is_crushed_under_its_dead_load_is_pushed_at_a_point_as_well() -> N
         ("undecided", 0.8, 0.0, 3.2),
     ],
 )
-def test_a_push_takes_its_time_for_as_far_as_blocks_are_to_go(
-    verdict: Any, gone: float, moved: float, expected: float
-) -> None:
-    """Not for the way of its control point, which may go anywhere."""
+def test_duration_of_next_push_follows_path_of_blocks(verdict: Any, gone: float, moved: float, expected: float) -> None:
+    """The duration does not follow the path of the control point, which need not move with the blocks."""
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
     rows = [TraverseRow(moved, 0.0, np.zeros((0, 2)), np.zeros(0), (0.0, 0.0), ())]
@@ -252,17 +250,15 @@ def test_a_push_takes_its_time_for_as_far_as_blocks_are_to_go(
         ((-1e-7, -3e-7), "falls to nothing while the control point stays where it is"),
     ],
 )
-def test_where_the_multiplier_falls_to_nothing_is_told_if_the_control_point_goes_there(
-    ends: tuple[float, float], said: str
-) -> None:
-    """Another stone may fall: what a control point moves by meanwhile is its springs' alone."""
+def test_message_on_vanishing_load_depends_on_control_point_motion(ends: tuple[float, float], said: str) -> None:
+    """If another block falls, the control point moves only by the elastic deformation of its joints."""
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
     assert said in lead.fall(np.column_stack([ends, (0.3, -0.1)]))
 
 
-def test_a_load_low_on_a_wall_that_hardly_goes_itself_pushes_to_the_brink() -> None:
-    """A point near the ground goes a twelfth as far as the top does: λ comes to nothing where the block balances."""
+def test_low_load_pushes_block_to_balance() -> None:
+    """A point near the ground moves a twelfth as far as the top; λ vanishes where the block balances on its toe."""
     at = np.array([0.0, 0.05 * HEIGHT])
     scene = slender({"kind": "point", "at": at.tolist(), "force": [1, 0]}).with_joint(friction=8.0)
     outcome = dem_dynamic(scene, displacements="finite")
@@ -271,8 +267,8 @@ def test_a_load_low_on_a_wall_that_hardly_goes_itself_pushes_to_the_brink() -> N
     assert outcome.curve[-1, 0] == pytest.approx(brink, rel=0.01)
 
 
-def test_a_slow_push_that_goes_farther_than_a_fast_one_goes_on_to_its_end() -> None:
-    """Parts of this wall fall one after the other, the later the slower it is pushed."""
+def test_slower_push_that_goes_farther_continues_to_its_end() -> None:
+    """Parts of this wall fall one after the other, and the later the slower it is pushed."""
     size = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2}
     rows: list[list[float]] = [
         [1, 1, -1, 1, 1],
@@ -287,8 +283,8 @@ def test_a_slow_push_that_goes_farther_than_a_fast_one_goes_on_to_its_end() -> N
     assert "falls to nothing" in outcome.message
 
 
-def test_a_point_that_other_loads_push_back_tells_as_much() -> None:
-    """As the block is pushed by its weight alone, whose λ the load at the point takes a hundredth of."""
+def test_control_point_moving_backwards_gives_same_limit_load() -> None:
+    """As for the block under its lateral load alone, of whose λ the backward point load takes a hundredth."""
     weight = 9.81 * slender({"kind": "lateral"}).mass[0]
     back = {"kind": "point", "at": [0.0, HEIGHT], "force": [-0.005 * weight, 0.0]}
     alone = dem_dynamic(slender({"kind": "lateral"}), displacements="finite")
@@ -303,20 +299,20 @@ def test_a_point_that_other_loads_push_back_tells_as_much() -> None:
     assert short.curve[-1, 0] == pytest.approx(-0.01, rel=0.02)
 
 
-BESIDE: dict[str, Any] = {"kind": "point", "at": [6 * WIDTH, HEIGHT], "force": [0.01, 0]}
+ON_STOUT_BLOCK: dict[str, Any] = {"kind": "point", "at": [6 * WIDTH, HEIGHT], "force": [0.01, 0]}
 AT_CORNER: dict[str, Any] = {"kind": "point", "at": [0.0, HEIGHT], "force": [1, 0]}
 
 
-def beside_a_stout_one(live: Any, **changes: Any) -> Scene:
-    """The slender block, and one three times as wide apart from it, which stays."""
+def slender_and_stout(live: Any, **changes: Any) -> Scene:
+    """The slender block, and at a distance one three times as wide, which does not move."""
     rows: list[list[float]] = [[1, -2, 3]]
     return courses(rows, WIDTH, HEIGHT, joint__friction=1.4, joint__mortar=MORTAR, load__live=live, **changes)
 
 
-@pytest.mark.parametrize("live", [[BESIDE, AT_CORNER], {"kind": "lateral"}], ids=["first load", "lateral"])
-def test_displacements_are_read_where_a_wall_moves(live: Any) -> None:
-    """What stays beside it has no curve: the corner of the block that topples has, tan(α − θ) and as a force there."""
-    outcome, corner = dem_dynamic(beside_a_stout_one(live), 0.005, displacements="finite"), np.array([0.0, HEIGHT])
+@pytest.mark.parametrize("live", [[ON_STOUT_BLOCK, AT_CORNER], {"kind": "lateral"}], ids=["first load", "lateral"])
+def test_displacements_are_read_at_moving_block(live: Any) -> None:
+    """A block at rest has no curve: it is read at the corner of the toppling one, tan(α − θ) or as a force there."""
+    outcome, corner = dem_dynamic(slender_and_stout(live), 0.005, displacements="finite"), np.array([0.0, HEIGHT])
     weight, middle = 9.81 * slender({"kind": "lateral"}).mass[0], np.array([WIDTH / 2, HEIGHT / 2])
     turned = angles(outcome.curve, corner, np.array([1.0, 0.0]))
     arms = [(about_its_toe(middle, angle), about_its_toe(corner, angle)) for angle in turned]
@@ -326,8 +322,8 @@ def test_displacements_are_read_where_a_wall_moves(live: Any) -> None:
     assert f"falls to nothing at {WIDTH:.4g} m" in outcome.message
 
 
-def test_displacements_are_read_at_the_control_point_again_once_it_moves(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where a push that was far too fast has thrown blocks about, and left it where it was."""
+def test_displacements_return_to_control_point_once_it_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A far too fast push has thrown blocks about but left the control point in place; the next push moves it."""
     after, heel = Push.after, (np.zeros(1, dtype=np.int64), np.zeros(2), np.array([0.0, 1.0]))
 
     def astray(lead: Push, traverse: Traverse) -> Push:
@@ -340,8 +336,8 @@ def test_displacements_are_read_at_the_control_point_again_once_it_moves(monkeyp
     assert np.array_equal(led.curve, alone.curve)
 
 
-def test_a_distance_is_that_of_where_a_wall_moves() -> None:
-    outcome = dem_dynamic(beside_a_stout_one({"kind": "lateral"}), displacements="finite", distance=0.01)
+def test_distance_is_measured_at_moving_block() -> None:
+    outcome = dem_dynamic(slender_and_stout({"kind": "lateral"}), displacements="finite", distance=0.01)
     assert outcome.curve[-1, 0] == pytest.approx(0.01, rel=0.02)
 
 
@@ -354,14 +350,12 @@ def test_a_distance_is_that_of_where_a_wall_moves() -> None:
         (0.1, {}, "distance = 0.1: goes with finite displacements of a wall that its live load pushes"),
     ],
 )
-def test_distances_that_mean_nothing_are_refused(
-    model: Any, distance: float, settings: dict[str, Any], message: str
-) -> None:
+def test_invalid_distances_are_refused(model: Any, distance: float, settings: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match=message):
         model(slender({"kind": "lateral"}), distance=distance, **settings)
 
 
-def test_a_support_goes_as_far_as_its_scene_says() -> None:
+def test_distance_is_refused_for_settlement() -> None:
     live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}
     with pytest.raises(SceneError, match="distance = 0.1: goes with"):
         dem_dynamic(block(load__live=live), displacements="finite", distance=0.1)

@@ -1,4 +1,4 @@
-"""A stone mortared to its base and pushed over: its joint tears from the edge on, along all of its length."""
+"""A block mortared to its base and pushed over: its joint tears progressively from the edge."""
 
 from dataclasses import replace
 from typing import Any
@@ -22,7 +22,7 @@ STRENGTH, STIFFNESS = 1e5, 1e10
 
 
 def stone(energy: float) -> Any:
-    """A stone that neither slides nor deforms, on mortar with a fracture energy [J/m²]."""
+    """A rigid block that cannot slide, on mortar with a fracture energy [J/m²]."""
     mortar = {"friction": 2.0, "cohesion": 4e5, "tensile_strength": STRENGTH, "fracture_energy_1": energy}
     spring = {"normal_stiffness": STIFFNESS, "shear_stiffness": 0.4 * STIFFNESS, "fracture_energy_2": energy}
     block = {"density": DENSITY, "young": 1e15, "poisson": 0.2}
@@ -30,14 +30,14 @@ def stone(energy: float) -> Any:
     return courses([[1]], WIDTH, HEIGHT, wall__thickness=THICKNESS, joint=joint, block=block)
 
 
-def borne_by_springs(energy: float, count: int = 200) -> float:
-    """Largest λ over all rotations of a rigid stone on a bed of springs that soften linearly."""
+def strength_on_springs(energy: float, count: int = 200) -> float:
+    """Largest λ over all rotations of a rigid block on a bed of springs that soften linearly."""
     place = (np.arange(count) + 0.5) / count * WIDTH - WIDTH / 2
     area, weight = WIDTH * THICKNESS, DENSITY * GRAVITY * WIDTH * HEIGHT * THICKNESS
     elastic, broken = STRENGTH / STIFFNESS, 2 * energy / STRENGTH
     largest = 0.0
     for rotation in np.geomspace(1e-6, 2e-3, 400):
-        # From wide open to pressed flat: the first sinking at which the bed bears the weight.
+        # From wide open to fully compressed: the first settlement at which the bed carries the weight.
         sinking = np.linspace(-2e-6, rotation * WIDTH, 4001)[:, None]
         opening = rotation * (place + WIDTH / 2) - sinking
         softened = STRENGTH * (broken - opening) / (broken - elastic)
@@ -51,9 +51,9 @@ def borne_by_springs(energy: float, count: int = 200) -> float:
 
 @pytest.mark.parametrize(("model", "off"), [(dem_dynamic, 0.03), (fem, 0.02)])
 @pytest.mark.parametrize("energy", [10.0, *at_length(1.0)])
-def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) -> None:
-    """Both ends alone would bear as much as a plastic joint, 1.7 to 2.5 times as much."""
-    exact, scene = borne_by_springs(energy), stone(energy)
+def test_mortar_tears_progressively_from_edge(model: Any, off: float, energy: float) -> None:
+    """With contact only at both ends it would carry as much as a plastic joint, 1.7 to 2.5 times as much."""
+    exact, scene = strength_on_springs(energy), stone(energy)
     outcome = model(scene)
     assert outcome.lower is not None
     assert outcome.upper is not None
@@ -64,31 +64,31 @@ def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) ->
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_mortar_of_ones_own_law_tears_from_its_edge_on_too(model: Any) -> None:
-    """A law that knows damage is followed along the joint, whatever energies the scene gives, here none."""
+def test_custom_damage_law_tears_progressively_from_edge(model: Any) -> None:
+    """A law with a damage variable gets points along the joint, also if the scene has no fracture energies, as here."""
 
     def constants(material: JointMaterial) -> tuple[float, ...]:
         return softening_constants(replace(material, fracture_energy_1=10.0, fracture_energy_2=10.0))
 
     law = Law("of one's own", constants, softening_kernel, HISTORY, stored_by_secant, damage="damage")
     scene = stone(10.0).with_joint(law=law, fracture_energy_1=None, fracture_energy_2=None)
-    exact, outcome = borne_by_springs(10.0), model(scene)
+    exact, outcome = strength_on_springs(10.0), model(scene)
     assert outcome.lower is not None
     assert outcome.upper is not None
     assert 0.97 * exact < outcome.lower <= outcome.upper < 1.03 * exact
 
 
-def test_mortar_tears_from_its_edge_on_at_finite_displacements_too() -> None:
-    """However coarse the mesh: contacts at the nodes of one cell in half a block would bear half as much again."""
-    exact = borne_by_springs(10.0)
+def test_mortar_tears_progressively_at_finite_displacements() -> None:
+    """For any mesh: contacts only at the nodes of a mesh with one cell per half block would carry 50 % more."""
+    exact = strength_on_springs(10.0)
     for cells in (1, 3, 8):
         pushed = fem(stone(10.0), cells=cells, modes=3, displacements="finite", distance=2e-3)
         assert pushed.multiplier == pytest.approx(exact, rel=0.015)
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_brittle_mortar_bears_what_its_first_crack_does_to_an_eighth(model: Any) -> None:
-    """Lifted off its middle, hardly any energy: (f_t A + W) / (1 + 6 e / b), of which nine points make 11 % more."""
+def test_brittle_mortar_carries_load_of_first_crack(model: Any) -> None:
+    """Eccentric lift, little fracture energy: (f_t A + W) / (1 + 6 e / b), which nine points overestimate by 11 %."""
     length, thickness, height, strength, eccentricity = 2.0, 0.4, 0.2, 1e4, 0.5
     joint = {"friction": 0.6, "cohesion": 2e4, "tensile_strength": strength}
     joint |= {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "fracture_energy_1": 0.01, "fracture_energy_2": 0.05}
@@ -103,11 +103,11 @@ def test_brittle_mortar_bears_what_its_first_crack_does_to_an_eighth(model: Any)
     assert 0.98 * exact < outcome.lower < outcome.upper < 1.125 * exact
 
 
-def test_a_dry_crack_bears_what_it_does_on_more_points_to_six_hundredths() -> None:
-    """One half slips down the other as the crack between them opens: each point slips at another load.
+def test_strength_of_dry_crack_converges_with_joint_points() -> None:
+    """One half slips along the other as the crack between them opens: each point slips at another load.
 
-    On thirty-three points both models are one. On the nine of a wall whose beds soften they are 2 % apart at most, and
-    `dem-static` has the two ends alone.
+    With 33 points both models agree. With the nine of a wall with softening bed joints they are at most 2 % apart, and
+    `dem-static` has only the two ends.
     """
     bed = {"friction": 1.0, "cohesion": 2e3, "tensile_strength": 1e3, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
     tough = {"fracture_energy_1": 1e3, "fracture_energy_2": 1e3}
@@ -125,8 +125,8 @@ def test_a_dry_crack_bears_what_it_does_on_more_points_to_six_hundredths() -> No
     assert ends == pytest.approx(0.98 * finer, rel=0.01)
 
 
-def test_energies_of_a_formula_are_spent_along_the_joint_too() -> None:
-    """As the same energies do that the scene gives."""
+def test_formula_energies_act_like_given_energies() -> None:
+    """Fracture energies from the formula give the same result as the same energies given in the scene."""
     mortar = Mortar(thickness=0.01, young=1e8, poisson=0.2)
     scene = stone(10.0).with_joint(elasticity=mortar, cohesion=4e4, tensile_strength=1e4)
     materials, _ = fractured(scene, "corrected")

@@ -1,4 +1,4 @@
-"""The step of deformable blocks in nodal form."""
+"""Time integration of deformable blocks in nodal coordinates."""
 
 import numpy as np
 from scipy.sparse.linalg import splu
@@ -11,7 +11,7 @@ from .walls import whole
 
 
 class NodalSteps:
-    """Central differences of all nodes in the form K u + Bᵀ (w σ(B u)), with sparse matrices."""
+    """Central differences for all nodes, with forces K u + Bᵀ (w σ(B u)) from sparse matrices."""
 
     def __init__(self, found: ModalWall, system: BlockSystem) -> None:
         K, M = whole(found.mesh, found.scene)

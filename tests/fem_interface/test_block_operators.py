@@ -1,4 +1,4 @@
-"""Operators of many blocks at once beside those of each by itself."""
+"""Operators of many blocks at once, against those of each block separately."""
 
 import numpy as np
 import pytest
@@ -17,10 +17,10 @@ YOUNG, POISSON = 1e9, 0.2
 @pytest.mark.parametrize("degree", [1, 2, 3])
 @pytest.mark.parametrize("scene", [wall(), triangle_wall()], ids=["bricks", "triangles"])
 @pytest.mark.parametrize("at_once", [1, 2, 500])
-def test_blocks_have_the_operators_that_each_has_alone(
+def test_batched_operators_equal_single_block_operators(
     scene: Scene, degree: int, at_once: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """To the last bit, or histories of dry walls would depend on their neighbours; in any order, with any moduli."""
+    """Bitwise, so that histories of dry walls do not depend on neighbouring blocks; in any order, with any moduli."""
     monkeypatch.setattr("fem_interface.block_operators.AT_ONCE", at_once)
     mesh = wall_mesh(scene)
     blocks = np.flatnonzero(~scene.fixed)[::-1].tolist()

@@ -1,4 +1,4 @@
-"""Soft blocks whose masses are coupled across their joints: statics, frequencies, steps and a fall."""
+"""Soft blocks with masses coupled across their joints: statics, frequencies, steps and collapse."""
 
 from typing import Any
 
@@ -18,13 +18,13 @@ from runningbond.dynamics.run import CALMING
 from runningbond.scene import Array, Closure, Indices, Scene, Stiffness
 from tests.walls import panel
 
-from .walls import GLUE, MORTAR, damped_without_giving_back, patch, wall
+from .walls import GLUE, MORTAR, check_damping_dissipates, patch, wall
 
 SOFT = [5e8, 2e9, 1e10]
 
 
 def coupled(scene: Scene) -> tuple[ModalWall, BlockSystem]:
-    """A wall, and its blocks with coupled masses."""
+    """A wall, and its system with coupled masses."""
     found = modal_wall(scene)
     system = with_coupled_masses(found, system_of(found))
     assert len(system.coupling.freedom) == 3 * (~scene.fixed).sum()
@@ -32,7 +32,7 @@ def coupled(scene: Scene) -> tuple[ModalWall, BlockSystem]:
 
 
 def masses(system: BlockSystem) -> tuple[Indices, Array]:
-    """What moves, and its masses as a matrix."""
+    """Indices of the moving freedoms, and their mass matrix."""
     moving = np.flatnonzero(np.isfinite(system.mass))
     M = np.diag(system.mass)
     M[np.ix_(system.coupling.freedom, system.coupling.freedom)] += system.coupling.inertia
@@ -41,8 +41,8 @@ def masses(system: BlockSystem) -> tuple[Indices, Array]:
 
 @pytest.mark.parametrize("young", SOFT)
 @pytest.mark.parametrize("name", ["wall", "patch", "wall-w1"])
-def test_coupled_masses_bound_the_frequency_and_a_period_takes_few_steps(name: str, young: float) -> None:
-    """From above, by the eigenvalues of the whole wall; far fewer steps than with masses scaled one by one."""
+def test_coupled_masses_bound_frequency_and_reduce_steps_per_period(name: str, young: float) -> None:
+    """An upper bound on the eigenvalues of the whole wall; far fewer steps than with mass scaling by modes."""
     scene = {"wall": wall(), "patch": patch(), "wall-w1": published_scene("wall-w1")}[name].with_block(young=young)
     found, system = coupled(scene)
     K, (_, M) = modal_stiffness(found).toarray(), masses(system)
@@ -57,8 +57,8 @@ def test_coupled_masses_bound_the_frequency_and_a_period_takes_few_steps(name: s
     assert steps < 300
 
 
-def test_coupled_masses_bound_joints_that_have_closed() -> None:
-    """The step is that of joints as stiff as they ever get, a hundred times as stiff as before they were pressed."""
+def test_coupled_masses_bound_frequency_of_closed_joints() -> None:
+    """The step allows for joints at their largest stiffness, a hundred times that of the unloaded joints."""
     scene = wall(5e8).with_joint(closure=Closure(growth=1e5, stiffest=1e12), elasticity=Stiffness(1e10, 4e9))
     found, system = coupled(scene)
     K, (_, M) = modal_stiffness(found, closed=True).toarray(), masses(system)
@@ -67,8 +67,8 @@ def test_coupled_masses_bound_joints_that_have_closed() -> None:
 
 
 @pytest.mark.parametrize("young", SOFT)
-def test_statics_do_not_feel_coupled_masses(young: float) -> None:
-    """A glued wall at rest has the displacements that its stiffness gives, to 1e-6 of the largest."""
+def test_statics_do_not_depend_on_coupled_masses(young: float) -> None:
+    """A bonded wall at rest has the displacements of its stiffness matrix, to 1e-6 of the largest."""
     found, system = coupled(wall(young, joint={**GLUE}))
     run, state = Run(system, local=CALMING), State.at_rest(system)
     assert settle(run, state, 0.7, Criteria(collapse=1.0, rest=1e-9)) == "stable"
@@ -78,8 +78,8 @@ def test_statics_do_not_feel_coupled_masses(young: float) -> None:
 
 
 @pytest.mark.parametrize("local", [0.0, CALMING])
-def test_a_coupled_step_is_that_of_dense_matrices(local: float) -> None:
-    """M a = f − α m |M⁻¹ f| sign v where the acceleration changes against the velocity, for a hundred steps."""
+def test_coupled_step_equals_dense_solution(local: float) -> None:
+    """M a = f − α m |M⁻¹ f| sign v while the acceleration changes against the velocity, for a hundred steps."""
     found, system = coupled(wall(1e9, joint={**GLUE}))
     run, state = Run(system, local=local, viscous=0.0), State.at_rest(system)
     moving, M = masses(system)
@@ -100,37 +100,37 @@ def test_a_coupled_step_is_that_of_dense_matrices(local: float) -> None:
 
 @pytest.mark.parametrize(("local", "viscous"), [(0.0, 0.0), (CALMING, 0.1)])
 @pytest.mark.parametrize("make", [wall, patch])
-def test_coupled_steps_account_for_their_energy(make: Any, local: float, viscous: float) -> None:
-    """A dry wall under a load put on at once: no energy is made, and damping never gives any back."""
+def test_energy_balance_closes_with_coupled_masses(make: Any, local: float, viscous: float) -> None:
+    """A dry wall under a sudden load: no energy is gained, and damping never returns energy."""
     _, system = coupled(make().with_block(young=1e9))
-    damped_without_giving_back(Run(system, local=local, viscous=viscous), State.at_rest(system), 0.2)
+    check_damping_dissipates(Run(system, local=local, viscous=viscous), State.at_rest(system), 0.2)
 
 
-def test_what_is_coupled_bears_loads_alone() -> None:
-    """A control works on the masses of modes one by one."""
+def test_coupled_masses_refuse_displacement_control() -> None:
+    """Displacement control needs the diagonal masses of the modes."""
     _, system = coupled(wall().with_block(young=2e9))
     with pytest.raises(ValueError, match="in common"):
         Run(system).drive(State.at_rest(system), 1.0, 1)
 
 
 @pytest.mark.parametrize("name", ["wall-w1", "wall-w2", "wall-w3", "panel-04", "point-load-1"])
-def test_published_walls_are_left_alone(name: str) -> None:
-    """Their blocks are stiffer than their joints: a period takes about as many steps as that of rigid ones."""
+def test_published_walls_have_no_coupled_masses(name: str) -> None:
+    """Their blocks are stiffer than their joints: a period takes about as many steps as for rigid blocks."""
     found = modal_wall(published_scene(name))
     system = system_of(found)
     assert with_coupled_masses(found, system) is system
 
 
-def test_large_walls_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Forces on all their blocks would make accelerations of all, at a cost that grows as its square."""
+def test_large_walls_have_no_coupled_masses(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The dense mass matrix couples all blocks, at a cost that grows with the square of their number."""
     found = modal_wall(wall(1e9))
     system = system_of(found)
-    monkeypatch.setattr("fem_interface.coupled_masses.LARGEST", 2)
+    monkeypatch.setattr("fem_interface.coupled_masses.MOST_BLOCKS", 2)
     assert with_coupled_masses(found, system) is system
 
 
-def test_soft_blocks_fall_where_stiff_ones_do() -> None:
-    """A pier of a block's width bears the same load, to the width of its brackets; the message tells of the masses."""
+def test_soft_and_stiff_blocks_have_same_limit_load() -> None:
+    """A pier one block wide has the same limit load, to the width of its brackets; the message reports the coupling."""
     pier = panel(wall__length=0.24, wall__height=0.36, joint__mortar=MORTAR)
     soft, stiff = (fem(pier.with_block(young=young), 0.03) for young in (1e9, 1e12))
     low, high = np.array([[found.lower, found.upper] for found in (soft, stiff)], dtype=float).T

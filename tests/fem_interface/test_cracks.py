@@ -1,4 +1,4 @@
-"""Cracks inside deformable blocks: triangles held together by inner joints of a strength of their own."""
+"""Cracks inside deformable blocks: triangles joined by inner joints with a strength of their own."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -42,7 +42,7 @@ MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 
 
 def wall(inner: dict[str, Any] | None, stiffness: float = 1e12, **changes: Any) -> Scene:
-    """A small wall whose blocks may crack at joints of a stiffness [Pa/m] in either direction."""
+    """A small wall whose blocks may crack at joints of a stiffness [Pa/m] in both directions."""
     size = {"wall__length": 0.48, "wall__height": 0.12, "block__young": 1e10, "block__poisson": 0.2}
     tables: dict[str, Any] = {**size, "joint__mortar": MORTAR, **changes}
     if inner is not None:
@@ -58,15 +58,15 @@ def wall(inner: dict[str, Any] | None, stiffness: float = 1e12, **changes: Any) 
 STRONG = {"cohesion": 1e9}
 BRITTLE = {"tensile_strength": 1e5, "fracture_energy_1": 0.5, "fracture_energy_2": 5.0}
 PRESSED = 2e4
-"""What a beam presses with on a wall [N]."""
+"""Force by which a beam presses on a wall [N]."""
 SPEED = 2e-3
-"""At which a block is torn apart [m/s]."""
+"""Speed at which a block is pulled apart [m/s]."""
 
 POINT = {"kind": "point", "at": [0.24, 0.12], "force": [0, -1]}
 
 
 def drawing() -> Scene:
-    """Two irregular blocks on a base, in gmsh's own triangulation."""
+    """Two irregular blocks on a base, triangulated by gmsh."""
     blocks = [
         np.array([[0.0, 0], [0.5, 0], [0.42, 0.6], [0, 0.5]]),
         np.array([[0.5, 0], [1.1, 0], [1.0, 0.55], [0.42, 0.6]]),
@@ -87,7 +87,7 @@ def corners() -> Scene:
 
 
 def elastic_displacement(found: ModalWall) -> float:
-    """Displacement of the control point under dead and live load, all joints elastic [m]."""
+    """Displacement of the control point under dead and live load, with all joints elastic [m]."""
     system = system_of(found)
     moving = np.flatnonzero(np.isfinite(system.mass))
     K = modal_stiffness(found)
@@ -99,8 +99,8 @@ def elastic_displacement(found: ModalWall) -> float:
 
 @pytest.mark.parametrize("cells", [1, 2])
 @pytest.mark.parametrize("make", [lambda: wall(STRONG), drawing, corners])
-def test_every_triangle_is_a_piece_and_every_edge_inside_a_block_a_joint(make: Any, cells: int) -> None:
-    """The edges of the mesh, counted: three a triangle are outline, joint or inner; weight and outline are kept."""
+def test_every_triangle_is_a_piece_and_every_inner_edge_a_joint(make: Any, cells: int) -> None:
+    """Edge count: the three edges of a triangle are outline, joint or inner; weight and outline are unchanged."""
     scene = make()
     whole, found = modal_wall(scene, cells), modal_wall(scene, cells, cracks="blocks")
     moving = ~scene.fixed[whole.mesh.triangle_block]
@@ -119,13 +119,13 @@ def test_every_triangle_is_a_piece_and_every_edge_inside_a_block_a_joint(make: A
 
 
 def _between(found: ModalWall, block: Indices) -> Array:
-    """From the pieces on side a to those on side b."""
+    """Vector from the pieces on side a to those on side b."""
     centroid = found.scene.blocks.centroid
     return np.asarray(centroid[block[:, 1]] - centroid[block[:, 0]])
 
 
-def test_the_axis_of_a_block_that_may_crack_is_one_more_edge_of_its_mesh() -> None:
-    """Blocks that the scene cuts in halves have the triangles of whole ones."""
+def test_axis_of_cracking_block_is_an_edge_of_its_mesh() -> None:
+    """Blocks that the scene splits into halves have the triangles of whole blocks."""
     cut, plain = (modal_wall(scene, 2).mesh for scene in (wall(STRONG), wall(None)))
 
     def centres(mesh: Any) -> Array:
@@ -135,8 +135,8 @@ def test_the_axis_of_a_block_that_may_crack_is_one_more_edge_of_its_mesh() -> No
     assert np.abs(centres(cut) - centres(plain)).max() < 1e-12
 
 
-def test_blocks_of_a_drawn_wall_crack_at_their_own_strength() -> None:
-    """Each joint of a draw has a material of its own, and edges inside blocks were of the last joint's: dry ones."""
+def test_blocks_of_random_wall_crack_at_their_own_strength() -> None:
+    """Each joint of a random draw has its own material; edges inside blocks once took that of the last joint (dry)."""
     narrow: dict[str, Any] = {
         "wall__length": None,
         "wall__height": None,
@@ -154,8 +154,8 @@ def test_equal_cells_have_four_templates() -> None:
 
 @pytest.mark.parametrize("make", [lambda: wall(STRONG), drawing])
 @pytest.mark.parametrize("on", ["elements", "joints"])
-def test_whole_blocks_open_no_inner_joint(make: Any, on: Any) -> None:
-    """Continuous displacements have no jump there, and those of whole blocks at the joints between them."""
+def test_continuous_displacements_open_no_inner_joint(make: Any, on: Any) -> None:
+    """Continuous displacements have no jump at inner joints, and those of whole blocks at joints between blocks."""
     scene = make()
     whole, found = (modal_wall(scene, 2, points=on, cracks=cracks) for cracks in ("joints", "blocks"))
     u = np.random.default_rng(3).normal(size=whole.mesh.points.shape)
@@ -172,8 +172,8 @@ def test_whole_blocks_open_no_inner_joint(make: Any, on: Any) -> None:
 
 @pytest.mark.parametrize("make", [lambda: wall(STRONG), drawing])
 @pytest.mark.parametrize("loads", ["consistent", "inner"])
-def test_loads_on_pieces_have_the_resultant_of_their_block(make: Any, loads: Any) -> None:
-    """Momentum that gravity and the live load give to each block, and none of rotation."""
+def test_piece_loads_have_resultant_of_their_block(make: Any, loads: Any) -> None:
+    """Gravity and live load accelerate each block in translation, without rotation."""
     scene = make()
     found = modal_wall(scene, 2, cracks="blocks")
     system = system_of(found, loads=loads)
@@ -185,15 +185,15 @@ def test_loads_on_pieces_have_the_resultant_of_their_block(make: Any, loads: Any
 
 
 class Bracket(Action):
-    """A force of one's own on the first block, at a point beside the wall."""
+    """Custom force on the first block, at a point beside the wall."""
 
     def forces(self, scene: Scene) -> Forces:
         """1 N to the right, at the end of an arm."""
         return Forces.on(scene, block=[0], at=(-0.1, 0.05), force=(1.0, 0.0))
 
 
-def test_a_force_beside_a_block_is_on_one_of_its_pieces() -> None:
-    """It has the same resultant on the whole wall; it was on none of them."""
+def test_force_beside_block_acts_on_one_of_its_pieces() -> None:
+    """It has the same resultant on the whole wall; it once acted on none of the pieces."""
     scene = wall(STRONG, load__live=Bracket())
     found = pieces(scene, wall_mesh(scene, 2), "blocks")
     force, at = found.scene.live_forces.force, found.scene.live_forces.at
@@ -202,8 +202,8 @@ def test_a_force_beside_a_block_is_on_one_of_its_pieces() -> None:
     assert found.owner[found.scene.live_forces.block].tolist() == [0]
 
 
-def test_blocks_move_as_wholes_where_their_pieces_do() -> None:
-    """Rigid motions of all blocks, given to their pieces, are read back."""
+def test_block_motions_are_recovered_from_pieces() -> None:
+    """Rigid motions of all blocks, applied to their pieces, are recovered."""
     scene = drawing()
     found = modal_wall(scene, cracks="blocks")
     run = Run(system_of(found))
@@ -220,7 +220,7 @@ def test_blocks_move_as_wholes_where_their_pieces_do() -> None:
     assert run.system.motion_of_blocks(state.velocity) == pytest.approx(2 * rigid, abs=1e-12)
 
 
-def test_cracks_need_a_scene_that_says_how_strong_blocks_are() -> None:
+def test_cracks_need_inner_joint_in_scene() -> None:
     with pytest.raises(SceneError, match="inner_joint: is missing; cracks inside blocks") as refused:
         fem(wall(None), cracks="blocks")
     assert "\n" not in str(refused.value)
@@ -228,7 +228,7 @@ def test_cracks_need_a_scene_that_says_how_strong_blocks_are() -> None:
         modal_wall(wall(STRONG), cracks="everywhere")  # type: ignore[arg-type]
 
 
-def test_an_inset_wider_than_an_inner_edge_is_refused_by_its_name() -> None:
+def test_inset_wider_than_inner_edge_is_refused() -> None:
     with pytest.raises(SceneError, match=r"inner_joint\.inset = 0.025"):
         modal_wall(wall({**STRONG, "inset": 0.025}), 2, cracks="blocks")
 
@@ -247,8 +247,8 @@ def test_inner_joints_have_their_own_fracture_energies_not_those_of_mortar() -> 
 
 
 @pytest.mark.parametrize("load", [{}, {"load": {"gravity": 0.0, "live": POINT}}])
-def test_stiff_inner_joints_leave_the_elastic_response_of_whole_blocks(load: dict[str, Any]) -> None:
-    """What they add to the compliance falls as 1 / k: slope −1 ± 0.05 over two decades."""
+def test_compliance_of_inner_joints_falls_as_one_over_stiffness(load: dict[str, Any]) -> None:
+    """Their added compliance falls as 1 / k: slope −1 ± 0.05 over two decades."""
     whole = elastic_displacement(modal_wall(wall(None, **load), modes="all"))
     walls = [wall(STRONG, k, **load) for k in (1e13, 1e14, 1e15)]
     added = [elastic_displacement(modal_wall(scene, cracks="blocks")) / whole - 1 for scene in walls]
@@ -257,16 +257,16 @@ def test_stiff_inner_joints_leave_the_elastic_response_of_whole_blocks(load: dic
 
 
 @pytest.mark.parametrize("cells", [2, 3])
-def test_inner_joints_give_way_as_series_of_springs_do(cells: int) -> None:
-    """E / (k h) in cells of height h, lower than they are wide; the message says so where it counts."""
+def test_added_compliance_is_that_of_springs_in_series(cells: int) -> None:
+    """E / (k h) in cells of height h, which is less than their width."""
     stiffness, height = 1e12, 0.06 / cells
     scene = wall(STRONG, stiffness, wall__height=0.06, wall__block_height=0.06)
     found = pieces(scene, wall_mesh(scene, cells), "blocks")
     assert added_compliance(found) == pytest.approx(1e10 / (stiffness * height), rel=1e-9)
 
 
-def test_strong_blocks_do_not_crack() -> None:
-    """λ of a small wall whose triangles are held together by stiff and strong joints is that of whole blocks."""
+def test_strong_inner_joints_give_limit_load_of_whole_blocks() -> None:
+    """λ of a small wall with stiff and strong joints between its triangles is that of whole blocks."""
     size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}
     whole = fem(wall(None, **size))
     cracked = fem(wall(STRONG, 2e11, **size), cracks="blocks")
@@ -282,7 +282,7 @@ def test_strong_blocks_do_not_crack() -> None:
 
 
 def strut(inner: dict[str, Any], cracks: Cracks) -> tuple[float, dict[str, Array]]:
-    """The force at which a wall between a base and a beam that stays at its height has been pushed by 0.2 mm."""
+    """Force at which a wall between a base and a beam of fixed height has been pushed by 0.2 mm, and the path."""
     size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}
     beam = {"height": 0.1, "condition": "fixed-height", "force": [0, -PRESSED]}
     beam["drive"] = {"displacement": [2e-4, 0], "rate": 0.02, "at": 0.24}
@@ -293,8 +293,8 @@ def strut(inner: dict[str, Any], cracks: Cracks) -> tuple[float, dict[str, Array
 
 
 @pytest.mark.long
-def test_a_wall_under_a_beam_that_stays_level_cracks_between_its_triangles() -> None:
-    """As whole blocks where they are strong; weak ones bear less. The beam neither turns nor rises, and so N grows."""
+def test_wall_under_fixed_height_beam_cracks_between_triangles() -> None:
+    """Strong blocks carry as much as whole blocks, weak ones less. The beam neither rotates nor rises, so N grows."""
     whole, _ = strut(STRONG, "joints")
     strong, way = strut(STRONG, "blocks")
     weak, _ = strut({"cohesion": 1e5, **BRITTLE}, "blocks")
@@ -305,8 +305,8 @@ def test_a_wall_under_a_beam_that_stays_level_cracks_between_its_triangles() -> 
 
 
 @pytest.mark.parametrize("at", [0.05, 0.12, 0.3, 0.5])
-def test_a_beam_is_pushed_at_any_height(at: float) -> None:
-    """Below it, at its underside, at its top and above: its force is the same on pieces as on blocks."""
+def test_beam_force_is_same_on_pieces_at_any_height(at: float) -> None:
+    """Below the beam, at its underside, at its top and above: the force is the same on pieces as on blocks."""
     scene = wall(STRONG, beam={"height": 0.1, "drive": {"force": [1, 0], "at": at}}, load={"gravity": 9.81})
     parted = modal_wall(scene, cracks="blocks").scene
     whole, pieces = scene.live_forces, parted.live_forces
@@ -322,13 +322,13 @@ def test_a_beam_is_pushed_at_any_height(at: float) -> None:
 FLOOR = {"kind": "line", "from": [0.0, 0.12], "to": [0.48, 0.12], "force": [300.0, -900.0]}
 SLOPE = {"kind": "line", "from": [0.05, 0.02], "to": [0.45, 0.11], "force": [300.0, -900.0]}
 LONG: dict[str, Any] = {"wall__length": None, "wall__height": None, "wall__block_height": 0.12, "wall__courses": [[2]]}
-"""One stone, two blocks long: each half has twice as many cells."""
+"""One block of twice the length: each half has twice as many cells."""
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3, 4])
 @pytest.mark.parametrize("size", [{}, LONG], ids=["bricks", "one long stone"])
-def test_a_line_load_is_on_every_triangle_along_it(cells: int, size: dict[str, Any]) -> None:
-    """Each triangle with a side on the top bears what lies on that side, at its middle, however fine the mesh is."""
+def test_line_load_acts_on_every_triangle_along_it(cells: int, size: dict[str, Any]) -> None:
+    """Each triangle with a side on top carries the load on that side, at the middle of the side, on any mesh."""
     scene = wall(STRONG, load={"gravity": 9.81, "live": FLOOR}, **size)
     found = modal_wall(scene, cells, cracks="blocks").scene
     for piece in np.flatnonzero(~found.fixed).tolist():
@@ -343,8 +343,8 @@ def test_a_line_load_is_on_every_triangle_along_it(cells: int, size: dict[str, A
 
 
 @pytest.mark.parametrize("line", [FLOOR, SLOPE])
-def test_a_line_load_on_triangles_has_the_resultants_of_that_on_blocks(line: dict[str, Any]) -> None:
-    """Along their top and across them."""
+def test_line_load_has_same_resultants_on_pieces_and_blocks(line: dict[str, Any]) -> None:
+    """Along the top and across the blocks."""
     scene = wall(STRONG, load={"gravity": 9.81, "live": line})
     found = modal_wall(scene, 3, cracks="blocks")
     each, owner = found.scene.live_forces, found.pieces.owner
@@ -353,8 +353,8 @@ def test_a_line_load_on_triangles_has_the_resultants_of_that_on_blocks(line: dic
     assert on_blocks.resultants(scene) == pytest.approx(wanted, abs=1e-9 * np.abs(wanted).max())
 
 
-def test_a_stone_is_torn_by_a_line_load_at_the_strength_of_its_triangles() -> None:
-    """Drawn upwards at f_t × thickness and the weight of its upper half, where the first edges right across are."""
+def test_line_load_tears_block_at_strength_of_its_triangles() -> None:
+    """Pulled upwards at f_t × thickness plus the weight of the upper half, below which edges cross the whole block."""
     inner = {"cohesion": 4e4, "tensile_strength": 2e4}
     load = {"gravity": 9.81, "live": {"kind": "line", "from": [0.0, 0.12], "to": [0.48, 0.12], "force": [0.0, 1.0]}}
     scene = wall(inner, joint__cohesion=1e5, load=load, **LONG)
@@ -372,7 +372,7 @@ LIVE: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("kind", LIVE)
-def test_displacements_of_triangles_are_read_where_those_of_blocks_are(kind: str) -> None:
+def test_control_point_is_same_with_pieces(kind: str) -> None:
     scene = wall(STRONG, load={"gravity": 9.81, "live": LIVE[kind]})
     found = modal_wall(scene, 2, cracks="blocks")
     (blocks, at, direction), (held, there, along) = scene.control_point, found.scene.control_point
@@ -381,8 +381,8 @@ def test_displacements_of_triangles_are_read_where_those_of_blocks_are(kind: str
     assert set(found.pieces.owner[held].tolist()) == set(blocks.tolist())
 
 
-def test_cracks_between_triangles_are_inner_joints_to_who_looks_at_toes() -> None:
-    """As those on axes, which the scene numbers; joints between blocks are none."""
+def test_cracks_between_triangles_count_as_inner_joints_at_toes() -> None:
+    """As the joints on block axes, which the scene numbers; joints between blocks do not count."""
     scene = wall(STRONG)
     found = modal_wall(scene, 2, cracks="blocks")
     lead = cast(Lead, SimpleNamespace(scene=scene, points=found.elements.points))
@@ -395,7 +395,7 @@ def test_cracks_between_triangles_are_inner_joints_to_who_looks_at_toes() -> Non
 
 
 def pulled_apart(direction: int, energies: tuple[float, float]) -> tuple[Run, State, ModalWall]:
-    """A block torn in two halves on its axis: its left end is held and its right one drawn away, x or y."""
+    """A block torn into halves at its axis: the left end is held, the right one moves in x (0) or y (1)."""
     brittle = {"cohesion": 2e5, "tensile_strength": 1e5}
     fracture = {"fracture_energy_1": energies[0], "fracture_energy_2": energies[1]}
     size = {"wall__length": 0.24, "wall__height": 0.06, "joint__friction": 0.0, "block__poisson": 0.0}
@@ -403,7 +403,7 @@ def pulled_apart(direction: int, energies: tuple[float, float]) -> tuple[Run, St
     system = system_of(found)
     centroid = found.scene.blocks.centroid
     moving = ~found.scene.fixed
-    # In opening the two outermost triangles are held and all others free; in shear both halves are, whole.
+    # In opening only the two outermost triangles are controlled; in shear both whole halves are.
     reach = np.abs(centroid[:, 0] - 0.12) - (0.09 if direction == 0 else 0.0)
     held, drawn = (np.flatnonzero(moving & (reach > 0) & (sense * (centroid[:, 0] - 0.12) > 0)) for sense in (-1, 1))
     assert len(held) == len(drawn) == (1 if direction == 0 else 4)
@@ -421,8 +421,8 @@ def pulled_apart(direction: int, energies: tuple[float, float]) -> tuple[Run, St
 
 
 @pytest.mark.parametrize("direction", [0, 1])
-def test_a_block_torn_apart_dissipates_the_energy_of_its_crack(direction: int) -> None:
-    """G_I × area where its halves are drawn apart, G_II × area where they are sheared; nothing elsewhere."""
+def test_torn_block_dissipates_fracture_energy_of_its_crack(direction: int) -> None:
+    """G_I × area if the halves are pulled apart, G_II × area if sheared; nothing elsewhere."""
     energies = (20.0, 35.0)
     run, state, found = pulled_apart(direction, energies)
     spent = np.zeros(run.system.interface.law.points)
@@ -442,8 +442,8 @@ def test_a_block_torn_apart_dissipates_the_energy_of_its_crack(direction: int) -
     assert spent[~crack].sum() < 1e-3 * spent.sum()
 
 
-def test_weaker_blocks_never_carry_more() -> None:
-    """λ of a tall block on a rough base: b / h as a whole, less as its triangles hold together less, at last none."""
+def test_weaker_inner_joints_reduce_limit_load() -> None:
+    """λ of a tall block on a rough base: b / h as a whole block, less with weaker inner joints, then infeasible."""
     size = {
         "wall__length": 0.12,
         "wall__height": 0.24,
@@ -459,8 +459,8 @@ def test_weaker_blocks_never_carry_more() -> None:
 
 
 @pytest.mark.parametrize("energy", [None, 0.0, 5.0])
-def test_dissipation_never_falls_where_blocks_crack(energy: float | None) -> None:
-    """Point by point, between blocks and inside them, through rest and collapse; and the ledger closes."""
+def test_dissipation_of_cracking_blocks_never_decreases(energy: float | None) -> None:
+    """At every point, between and inside blocks, through rest and collapse; the energy balance closes."""
     brittle = {"cohesion": 300.0, "fracture_energy_1": energy, "fracture_energy_2": energy}
     inner = {key: value for key, value in brittle.items() if value is not None}
     found = modal_wall(wall(inner, 1e11), cracks="blocks")

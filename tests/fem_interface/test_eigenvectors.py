@@ -1,4 +1,4 @@
-"""Eigenvectors by rotations beside those of a library."""
+"""Eigenvectors by Jacobi rotations, against SciPy."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from fem_interface.eigenvectors import eigenvectors, symmetric_eigenvectors
 
 @settings(max_examples=30)
 @given(n=st.integers(1, 24), several=st.integers(0, 6), decades=st.integers(0, 10), seed=st.integers(0, 2**32 - 1))
-def test_symmetric_matrices_are_turned_to_their_diagonal(n: int, several: int, decades: int, seed: int) -> None:
-    """Also where values are alike, and where they span ten decades."""
+def test_symmetric_matrices_are_diagonalized(n: int, several: int, decades: int, seed: int) -> None:
+    """Also with repeated eigenvalues, and with eigenvalues over ten decades."""
     generator = np.random.default_rng(seed)
     own = np.sort(10.0 ** generator.uniform(0, decades, n))
     own[:several] = own[0]
@@ -27,13 +27,13 @@ def test_symmetric_matrices_are_turned_to_their_diagonal(n: int, several: int, d
 
 @settings(max_examples=30)
 @given(columns=st.integers(1, 16), rows=st.integers(0, 5), seed=st.integers(0, 2**32 - 1))
-def test_solutions_are_all_there_are_in_a_span_on_which_rows_are_zero(columns: int, rows: int, seed: int) -> None:
+def test_eigenvectors_span_the_constrained_subspace(columns: int, rows: int, seed: int) -> None:
     generator = np.random.default_rng(seed)
     n = 30
     root, inert = generator.normal(size=(2, n, n))
     K, M = root @ root.T, inert @ inert.T + n * np.eye(n)
     within, zero = generator.normal(size=(n, columns)), generator.normal(size=(rows, n))
-    zero = np.vstack([zero, 2.0 * zero[:1]])  # one says what another does
+    zero = np.vstack([zero, 2.0 * zero[:1]])  # one constraint repeats another
     own, shapes = eigenvectors(K, M, within, zero)
     space = within @ null_space(zero @ within) if rows else within
     assert shapes.shape == space.shape

@@ -1,4 +1,4 @@
-"""The extra give of deformable blocks, against their stiffness."""
+"""Added compliance of deformable blocks, as a function of their stiffness."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from .walls import whole
 
 
 def _cell_moduli(width: float, height: float, young: float) -> Array:
-    """Moduli of one periodic cell, ``(3, 3)`` [Pa], two blocks and the joints that are theirs, per unit thickness."""
+    """Moduli of one periodic cell, ``(3, 3)`` [Pa]: two blocks and the joints they own, per unit thickness."""
     size = {"wall__block_width": width, "wall__block_height": height, "wall__thickness": 1.0}
     stiff = {"friction": 0.6, "normal_stiffness": 80e9, "shear_stiffness": 30e9}
     scene = panel(**size, wall__length=6 * width, wall__height=6 * height, block__young=young, joint=stiff)
@@ -57,7 +57,7 @@ def _cell_moduli(width: float, height: float, young: float) -> Array:
 
 
 @pytest.mark.parametrize("block", [(0.24, 0.06), (0.06, 0.06), (0.06, 0.24)])
-def test_extra_compliance_over_rigid_blocks_falls_as_one_over_their_stiffness(block: tuple[float, float]) -> None:
+def test_added_compliance_falls_as_one_over_block_stiffness(block: tuple[float, float]) -> None:
     """Slope −1 ± 0.02 over three decades, in each of the three macroscopic strains."""
     moduli = elastic_moduli(*block, bed_normal=80e9, bed_shear=30e9, head_normal=80e9, head_shear=30e9)
     rigid = np.array([1 / moduli.a1111, 1 / moduli.a2222, 1 / (4 * moduli.a1212)])

@@ -1,4 +1,4 @@
-"""Deformable blocks at finite displacements: against rigid ones, the small-displacement system and exact solutions."""
+"""Deformable blocks at finite displacements: against rigid blocks, small displacements and exact solutions."""
 
 import math
 from dataclasses import replace
@@ -66,7 +66,7 @@ def weight(scene: Scene, block: int) -> float:
 
 
 def place(run: Run, state: State, block: int) -> Array:
-    """Motion of a block: translations and rotation."""
+    """Translations and rotation of a block."""
     return np.asarray(state.motion[run.system.rigid[block]])
 
 
@@ -84,7 +84,7 @@ def weightless(system: BlockSystem) -> BlockSystem:
 
 
 def turned(blocks: NodeOutline, seed: int, turn: float = 0.1, apart: float = 2e-3, deformed: float = 1e-4) -> Array:
-    """A motion that turns and moves every block a little and strains it by about 1e-3."""
+    """Motion that rotates and moves every block slightly and strains it by about 1e-3."""
     rng = np.random.default_rng(seed)
     motion = rng.normal(size=len(blocks.wall.mass)) * deformed
     moving = ~blocks.scene.fixed
@@ -94,7 +94,7 @@ def turned(blocks: NodeOutline, seed: int, turn: float = 0.1, apart: float = 2e-
 
 
 def bounded(system: BlockSystem, bound: float) -> BlockSystem:
-    """The same blocks with a larger bound of their frequency."""
+    """The same blocks with another bound on their frequency."""
     return replace(system, interface=replace(system.interface, frequency_squared=bound))
 
 
@@ -108,11 +108,11 @@ def jumps_on(system: BlockSystem, geometry: Any, motion: Array, n: int) -> Array
 
 
 @pytest.mark.parametrize("inset", [0.0, 0.005])
-def test_blocks_with_three_modes_move_as_rigid_ones(monkeypatch: pytest.MonkeyPatch, inset: float) -> None:
-    """The whole motion of a wall that is shaken to pieces, to 1e-9, over 300 steps and several searches.
+def test_three_modes_move_as_rigid_blocks(monkeypatch: pytest.MonkeyPatch, inset: float) -> None:
+    """Motion of a wall that is shaken apart, to 1e-9, over 300 steps and several contact detections.
 
-    Blocks start apart: where corners coincide, rounding decides which of them rests on the other's side. What points
-    have been through is retold for all of them, as rigid blocks do and `fem` where the ground moves.
+    Blocks start apart: at coincident corners rounding would decide which one rests on the other's side. Histories are
+    transformed for all points, as for rigid blocks, and as in `fem` under ground motion.
     """
     monkeypatch.setattr("fem_interface.finite_system.reframe_open", reframe_deformable)
     scene = wall(joint__inset=inset)
@@ -136,11 +136,11 @@ def test_blocks_with_three_modes_move_as_rigid_ones(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("cells", [1, *at_length(2, 3)])
-def test_a_lintel_that_cracks_makes_no_energy(cells: int) -> None:
-    """It bears what it does at small displacements, where joint points keep their frames.
+def test_cracking_lintel_gains_no_energy(cells: int) -> None:
+    """It carries the load of small displacements, where joint points keep their frames.
 
-    The corners of its halves are apart across the crack, by more than it slips: whichever of them has passed the other
-    one rests on its half, at each crossing of one and the other, and the mortar that still holds must not feel it.
+    Across the crack the corners of the halves are farther apart than it slips. A corner that has passed the other one
+    rests on the other half; this changes with each crossing, and must not affect the mortar that still holds.
     """
     glue = JointMaterial(0.6, 1e5, 2e4, elasticity=Mortar(1e10, 0.2, 0.01))
     glue = replace(glue, fracture_energy_1=20.0, fracture_energy_2=200.0)
@@ -163,7 +163,7 @@ def test_a_lintel_that_cracks_makes_no_energy(cells: int) -> None:
 @pytest.mark.parametrize("inset", [0.0, 0.005])
 @pytest.mark.parametrize(("modes", "cells"), [(6, 1), ("all", 1), ("all", 2)])
 def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, inset: float) -> None:
-    """Modal forces of joints as springs: the difference falls as the square of the amplitude, slope 2 ± 0.1."""
+    """Modal forces of elastic joints: the difference falls as the square of the amplitude, slope 2 ± 0.1."""
     scene = wall(joint__inset=inset)
     blocks = node_outline(scene, cells, modes)
     finite, small = finite_system(blocks), system_of(modal_wall(scene, cells, modes))
@@ -183,7 +183,7 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
             (finite, forces[0], bears),
             (small, forces[1], np.ones(small.interface.law.points)),
         ):
-            # Slip is counted from where the undeformed contact is.
+            # Slip is measured from the undeformed position of the contact.
             jump = np.array(system.interface.jumps(motion)) - system.interface.jumps(0 * motion)
             system.interface.scatter(*(stiffness * jump * mask), tuple(system.interface.geometry), force)
         assert np.abs(forces[1]).max() > 0
@@ -195,11 +195,11 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
 @pytest.mark.parametrize("inset", [0.0, 0.01])
 @given(seed=st.integers(0, 1000))
 @settings(max_examples=15, derandomize=True)
-def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float, seed: int) -> None:
-    """Scatter is minus the transpose of the derivative of gather, on turned and deformed blocks.
+def test_scatter_is_transposed_derivative_of_gather_at_large_rotations(inset: float, seed: int) -> None:
+    """Scatter is minus the transpose of the derivative of gather, on rotated and deformed blocks.
 
-    Rounded corners do so to the strain of the side that they roll on. Where arc meets arc it is so to the penetration;
-    these are left out, and nodes that come near the end of a side.
+    For rounded corners this holds to the strain of the side they roll on; for arc against arc only to the penetration.
+    Contacts between arcs are left out, and so are nodes close to the end of a side.
     """
     scene = wall(wall__length=0.72, wall__height=0.18, joint__inset=inset)
     blocks = node_outline(scene, 2)
@@ -230,7 +230,7 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     assert -force[:-1] @ direction[:-1] == pytest.approx(work, abs=1e-5 * scale)
 
 
-def test_turning_as_one_body_neither_strains_blocks_nor_opens_joints() -> None:
+def test_rigid_rotation_of_wall_causes_no_strain_and_no_jumps() -> None:
     """By one radian: no strain of any triangle and no change of any jump between moving blocks, to 1e-12."""
     scene = wall()
     blocks = node_outline(scene, 2)
@@ -261,8 +261,8 @@ def test_turning_as_one_body_neither_strains_blocks_nor_opens_joints() -> None:
         assert np.abs(F @ F.transpose(0, 2, 1) - np.eye(2)).max() < 1e-12
 
 
-def test_a_spinning_block_turns_by_a_radian_without_stress() -> None:
-    """In free flight, at 10 rad/s: no force on any mode, and the turn is exact."""
+def test_spinning_block_stays_free_of_stress() -> None:
+    """In free flight at 10 rad/s: no force on any mode, and the rotation is exact."""
     scene = wall()
     blocks = node_outline(scene)
     run = Run(weightless(finite_system(blocks)), local=0.0)
@@ -279,8 +279,8 @@ def test_a_spinning_block_turns_by_a_radian_without_stress() -> None:
     assert not state.motion[deformations].any()
 
 
-def test_momentum_of_a_free_pile_is_kept_while_contacts_are_found_anew() -> None:
-    """Linear and angular, to 1e-12, while deformable blocks far above the ground fly apart, strike and slide."""
+def test_free_pile_conserves_momentum_through_contact_updates() -> None:
+    """Linear and angular momentum, to 1e-12, while blocks far above the ground fly apart, collide and slide."""
     scene = wall(wall__length=0.72, joint__inset=0.005)
     blocks = node_outline(scene)
     run = Run(weightless(finite_system(blocks)), local=0.0)
@@ -307,8 +307,8 @@ def test_momentum_of_a_free_pile_is_kept_while_contacts_are_found_anew() -> None
     assert run.ledger(state).elastic > 0
 
 
-def test_a_state_goes_its_own_way_with_its_contacts() -> None:
-    """Going back to a copy gives the same again, to the last bit, whatever the run has done in between."""
+def test_copied_state_keeps_its_own_contacts() -> None:
+    """Continuing from a copy gives the same result to the last bit, whatever the run did in between."""
     run = Run(finite_system(node_outline(wall())))
     state = State.at_rest(run.system)
     state.velocity[run.system.rigid[-1]] = 1.0, 0.5, 2.0
@@ -328,7 +328,7 @@ def test_a_state_goes_its_own_way_with_its_contacts() -> None:
         ({"support__kind": "corners"}, "support.kind"),
     ],
 )
-def test_scenes_of_another_kind_are_refused(changes: dict[str, Any], key: str) -> None:
+def test_unsupported_scenes_are_refused(changes: dict[str, Any], key: str) -> None:
     with pytest.raises(SceneError, match=key):
         node_outline(wall(**changes))
 
@@ -345,8 +345,8 @@ def test_materials_without_a_stiffness_are_refused() -> None:
 
 
 @pytest.mark.parametrize("cells", [2, *at_length(1)])
-def test_a_stiff_block_loses_resistance_as_the_tangent(cells: int) -> None:
-    """E = 1e12: λ(θ) = tan(α − θ) within 1 % of tan α until it stands on its corner."""
+def test_resistance_of_stiff_block_falls_as_tangent(cells: int) -> None:
+    """E = 1e12: λ(θ) = tan(α − θ) within 1 % of tan α, checked for 0.02 < θ < 0.2."""
     scene = panel(
         wall__length=0.25,
         wall__height=1.0,
@@ -371,14 +371,14 @@ def test_a_stiff_block_loses_resistance_as_the_tangent(cells: int) -> None:
     assert smooth[falling] == pytest.approx(np.tan(math.atan(0.25) - theta)[falling], abs=0.01 * 0.25)
 
 
-# --- blocks that find new places -----------------------------------------------------------------------------
+# --- blocks that move onto other blocks ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("cells", "inset"), [(1, 0.02), (2, 0.0), *at_length((1, 0.0), (2, 0.02))])
-def test_a_block_slides_from_one_block_onto_the_next_of_the_course(cells: int, inset: float) -> None:
-    """Pushed at a constant speed it resists λ = μ all the way, drops by nothing, and its weight changes hands.
+def test_block_slides_onto_next_block_of_course(cells: int, inset: float) -> None:
+    """At constant speed the resistance is λ = μ throughout, the block does not drop, and its weight is transferred.
 
-    Where its corners pass the joint between the two it is lifted by no more than its own joint gave way.
+    Where its corners pass the joint between the two blocks, it is lifted by no more than the compression of its joint.
     """
     mu, width = 0.3, 0.4
     scene = dry([rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2), rectangle(0.3, 0.2, width, 0.2)], mu, 1e8, inset)
@@ -409,8 +409,8 @@ def test_a_block_slides_from_one_block_onto_the_next_of_the_course(cells: int, i
 
 
 @pytest.mark.parametrize("inset", [0.0, 0.01])
-def test_energy_is_accounted_for_while_a_wall_falls_to_pieces(inset: float) -> None:
-    """Work of the loads = kinetic + stored + friction + damped, to 1 % of it, over many a search for contacts."""
+def test_energy_balance_closes_while_wall_falls_apart(inset: float) -> None:
+    """Work of the loads = kinetic + stored + friction + damped, to 1 % of it, over many contact detections."""
     scene = panel(
         wall__height=0.48,
         wall__length=0.24,
@@ -424,8 +424,8 @@ def test_energy_is_accounted_for_while_a_wall_falls_to_pieces(inset: float) -> N
     check_energy_of_a_fall(run)
 
 
-def test_a_glued_block_slides_once_its_joint_is_broken_and_is_dry_wherever_it_comes_to_lie() -> None:
-    """Pushed, it resists by cohesion and friction, and then by friction alone, on its own place and on the next."""
+def test_bonded_block_slides_dry_after_fracture() -> None:
+    """Pushed, it resists by cohesion and friction and then by friction only, in its own place and on the next block."""
     mu, width, energy = 0.3, 0.4, 20.0
     scene = dry([rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2), rectangle(0.55, 0.2, width, 0.2)], mu, 1e9, 0.01)
     glue = {"cohesion": 1e4, "tensile_strength": 1e4, "fracture_energy_1": energy, "fracture_energy_2": energy}
@@ -458,8 +458,8 @@ def test_a_glued_block_slides_once_its_joint_is_broken_and_is_dry_wherever_it_co
     assert spent == pytest.approx(energy * area + mu * heavy * u[-1], rel=0.03)
 
 
-def test_a_glued_wall_breaks_as_at_small_displacements() -> None:
-    """Pushed by a millimetre, past its peak and into softening: the same multiplier within 1 % of the peak."""
+def test_bonded_wall_fractures_as_at_small_displacements() -> None:
+    """Pushed by 1 mm, past the peak and into softening: the same multiplier within 1 % of the peak."""
     mortar = {**MORTAR, "young": 1e8}
     scene = wall(joint__mortar=mortar, joint__cohesion=2e4, joint__tensile_strength=1e4, joint__inset=0.005)
     scene = scene.with_joint(fracture_energy_1=5.0, fracture_energy_2=10.0)
@@ -502,8 +502,8 @@ def pushed(model: Any, scene: Scene, at: list[float], **settings: Any) -> Array:
 
 @pytest.mark.long
 @pytest.mark.parametrize("modes", [3, pytest.param("all", marks=pytest.mark.long)])
-def test_a_wall_of_deformable_blocks_falls_as_one_of_rigid_blocks(modes: ModeCount) -> None:
-    """W1 past its peak, with corners rounded at 20 mm: within 1 %, with three modes and with all of them."""
+def test_deformable_wall_softens_as_rigid_wall(modes: ModeCount) -> None:
+    """W1 past its peak, with corners rounded at 20 mm: within 1 %, with three modes and with all modes."""
     scene = softer("wall-w1", 0.01)
     at = [0.02, 0.05, 0.1, 0.2]
     rigid = pushed(dem_dynamic, scene, at)
@@ -511,7 +511,7 @@ def test_a_wall_of_deformable_blocks_falls_as_one_of_rigid_blocks(modes: ModeCou
 
 
 @pytest.mark.long
-def test_resistance_after_the_peak_depends_neither_on_the_mesh_nor_on_the_stiffness_of_blocks() -> None:
+def test_post_peak_resistance_depends_neither_on_mesh_nor_on_block_stiffness() -> None:
     at = [0.02, 0.05, 0.1, 0.2, 0.3]
     found = [
         pushed(fem, softer("wall-w1", 0.01, young), at, cells=cells)

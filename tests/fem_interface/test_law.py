@@ -1,4 +1,4 @@
-"""Fracture energies and what joints spend."""
+"""Fracture energies and joint dissipation."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def test_fracture_energies_as_corrected_and_as_printed() -> None:
     assert corrected_energies(0.24, 0.0, 0.0, 1e9) == (0.0, 0.0)
 
 
-def test_each_joint_has_the_energy_of_its_length() -> None:
+def test_fracture_energy_depends_on_joint_length() -> None:
     scene = wall(joint__cohesion=1e5)
     for energies, bed in (("corrected", 0.12), ("printed", 0.24)):
         materials, of_joint = fractured(scene, energies)  # type: ignore[arg-type]
@@ -37,7 +37,7 @@ def test_each_joint_has_the_energy_of_its_length() -> None:
             assert (found.fracture_energy_1, found.fracture_energy_2) == pytest.approx(expected, rel=1e-3)
 
 
-def test_energies_need_a_mortar_to_follow_from() -> None:
+def test_energies_from_formula_need_mortar() -> None:
     stiff = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     with pytest.raises(SceneError, match=r"joint.mortar"):
         system_of(modal_wall(wall(joint=stiff)), energies="corrected")
@@ -45,8 +45,8 @@ def test_energies_need_a_mortar_to_follow_from() -> None:
 
 @pytest.mark.parametrize("energy", [None, 0.0, 20.0])
 @pytest.mark.parametrize("cohesion", [0.0, 2e3])
-def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
-    """Point by point, through rest and collapse; c = f_t = G = 0 among them."""
+def test_dissipation_never_decreases(cohesion: float, energy: float | None) -> None:
+    """At every point, through rest and collapse, including c = f_t = G = 0."""
     scene = wall(1e10, joint__cohesion=cohesion)
     run = Run(system_of(modal_wall(scene.with_joint(fracture_energy_1=energy, fracture_energy_2=energy))))
     state = check_dissipation(run, 100)
@@ -55,7 +55,7 @@ def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
         assert state.history[DAMAGE].max() <= 1
 
 
-def test_no_strength_and_no_energy_comes_to_an_outcome() -> None:
+def test_zero_strength_and_zero_energy_equal_dry_joint() -> None:
     scene = wall(1e12)
     dry = scene.with_joint(cohesion=0.0, tensile_strength=0.0, fracture_energy_1=0.0, fracture_energy_2=0.0)
     outcome = fem(dry)

@@ -1,4 +1,4 @@
-"""Loads along lines on whole blocks: on every triangle along them, so that a lintel bends as a beam does."""
+"""Line loads on whole blocks act on every triangle along the line, so that a lintel bends like a beam."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ BODY: dict[str, Any] = {"kind": "body", "acceleration": [0.0, -LOAD / (DENSITY *
 
 
 def lintel(load: dict[str, Any], cells: int) -> tuple[ModalWall, BlockSystem]:
-    """One block on a pin and a roller, under a load alone."""
+    """One block on a pin and a roller, under the given load only."""
     size: dict[str, Any] = {"wall__length": None, "wall__height": None, "wall__courses": [[6]]}
     size |= {"wall__block_width": LENGTH / 6, "wall__block_height": HEIGHT, "wall__thickness": THICKNESS}
     scene = wall(YOUNG, 0.0, **size, support__kind="corners", load={"gravity": 0.0, "live": load})
@@ -28,17 +28,17 @@ def lintel(load: dict[str, Any], cells: int) -> tuple[ModalWall, BlockSystem]:
 
 
 def deflection(load: dict[str, Any], cells: int) -> float:
-    """How far the middle of the lintel sinks [m]; its pins hold it without any forces of joints."""
+    """Deflection of the middle of the lintel [m]; its pins hold it without any joint forces."""
     found, system = lintel(load, cells)
     motion = np.divide(system.live, system.stiffness, out=np.zeros_like(system.live), where=system.stiffness > 0)
     middle = np.argmin(np.hypot(*(found.mesh.points - [LENGTH / 2, HEIGHT / 2]).T))
     return -float(found.displacement(motion)[middle, 1])
 
 
-def test_a_lintel_sinks_under_a_line_load_as_a_timoshenko_beam() -> None:
-    """5 q L⁴ / 384 E I + q L² / 8 κ G A, to which triangles come in the square of their size.
+def test_lintel_under_line_load_deflects_as_timoshenko_beam() -> None:
+    """5 q L⁴ / 384 E I + q L² / 8 κ G A, with an error quadratic in the size of the triangles.
 
-    On any mesh as under the same load on its mass, but for what that squeezes the beam.
+    On any mesh the same as under an equal body force, apart from its transverse compression.
     """
     area, inertia, shear = HEIGHT * THICKNESS, THICKNESS * HEIGHT**3 / 12, YOUNG / 2
     exact = 5 * LOAD * LENGTH**4 / (384 * YOUNG * inertia) + LOAD * LENGTH**2 / (8 * 5 / 6 * shear * area)
@@ -48,8 +48,8 @@ def test_a_lintel_sinks_under_a_line_load_as_a_timoshenko_beam() -> None:
 
 
 @pytest.mark.parametrize("cells", [1, 3])
-def test_every_node_along_a_line_load_has_its_share(cells: int) -> None:
-    """What lies on the halves of the two edges beside it: the work on displacements that are linear in between."""
+def test_line_load_is_lumped_to_nodes_along_it(cells: int) -> None:
+    """Load on the halves of the two adjacent edges, which does the same work on piecewise linear displacements."""
     found, system = lintel(LINE, cells)
     points, (template,) = found.mesh.points, found.templates
     top = np.flatnonzero(np.abs(points[:, 1] - HEIGHT) < 1e-9)
@@ -62,8 +62,8 @@ def test_every_node_along_a_line_load_has_its_share(cells: int) -> None:
 
 
 @pytest.mark.parametrize("load", [LINE, SLOPE])
-def test_a_line_load_on_triangles_has_its_resultants_on_every_block(load: dict[str, Any]) -> None:
-    """Of a wall of halves and wholes, along their top and across them."""
+def test_line_load_has_correct_resultants_on_every_block(load: dict[str, Any]) -> None:
+    """For a wall of half and whole blocks, along their top and across them."""
     changes: dict[str, Any] = {"wall__length": LENGTH, "wall__height": HEIGHT, "wall__block_width": 0.5}
     scene = wall(wall__block_height=0.1, **changes, load={"gravity": 9.81, "live": {**load}})
     found = modal_wall(scene, 3, "all")

@@ -1,4 +1,4 @@
-"""Loads of deformable blocks, and masses that are scaled."""
+"""Loads on deformable blocks, and mass scaling."""
 
 import math
 from dataclasses import replace
@@ -31,27 +31,27 @@ from tests.walls import panel
 from .nodal_steps import NodalSteps
 from .walls import GLUE, MORTAR, joint_stiffness_of, patch, pushed, replace_blocks, triangle_wall, wall
 
-SLOWLY = 0.2
-"""Time in which a load grows by a fifth of the largest, and a wall's weight from nothing [s]."""
+GROWTH_TIME = 0.2
+"""Time in which a load grows by a fifth of the largest load, and the weight from zero [s]."""
 
-HELD = 2e-3 * (1 + 1e-6)
-"""Part of a frequency that mass scaling may take."""
+MAX_FREQUENCY_LOSS = 2e-3 * (1 + 1e-6)
+"""Largest relative decrease of a frequency by mass scaling (with rounding)."""
 
 
 def of_stiffness(name: str, young: float) -> Scene:
-    """A published wall with blocks of another stiffness."""
+    """A published wall with another Young's modulus of the blocks."""
     scene = published_scene(name)
     return scene.with_block(young=young)
 
 
 def _lowest_frequencies(K: csr_array, mass: Array) -> Array:
-    """Twenty of them [1/s], ascending."""
+    """The twenty lowest frequencies [1/s], ascending."""
     found = eigsh(K.tocsc(), 20, diags_array(mass).tocsc(), sigma=0, return_eigenvectors=False)
     return np.sqrt(np.sort(found))
 
 
 def _dense_frequencies(system: BlockSystem, count: int) -> Array:
-    """The lowest ones [1/s], as `vibrations` has them, without their shapes."""
+    """The lowest frequencies [1/s], as from `vibrations`, without the mode shapes."""
     stiffness, mass = elastic_stiffness(system)
     root = 1 / np.sqrt(mass)
     square = eigh(stiffness * root[:, None] * root, eigvals_only=True, subset_by_index=[0, count - 1])
@@ -60,8 +60,8 @@ def _dense_frequencies(system: BlockSystem, count: int) -> Array:
 
 @pytest.mark.parametrize("cells", [2, 3])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_loads_lumped_at_inner_nodes_have_the_resultant_of_each_block(make: Any, cells: int) -> None:
-    """Force and moment of every block, and nothing on its outline; what they do to its shape is another matter."""
+def test_loads_lumped_at_inner_nodes_have_block_resultants(make: Any, cells: int) -> None:
+    """Force and moment on every block, with no load on its outline; the effect on deformations differs."""
     found = modal_wall(make(), cells)
     consistent, lumped = (system_of(found, loads=loads) for loads in ("consistent", "inner"))
     for a, b in ((consistent.dead, lumped.dead), (consistent.live, lumped.live)):
@@ -76,7 +76,7 @@ def test_loads_lumped_at_inner_nodes_have_the_resultant_of_each_block(make: Any,
     assert not mass[~moving].any()
 
 
-def test_rigid_blocks_do_not_feel_where_their_loads_act() -> None:
+def test_rigid_blocks_do_not_depend_on_load_lumping() -> None:
     scene = panel(joint__mortar=MORTAR)
     consistent, lumped = (
         pushed(system_of(modal_wall(scene, modes=3), loads=loads))[0] for loads in ("consistent", "inner")
@@ -84,7 +84,7 @@ def test_rigid_blocks_do_not_feel_where_their_loads_act() -> None:
     assert np.abs(consistent - lumped).max() < 1e-12 * np.abs(lumped).max()
 
 
-def test_a_block_without_inner_nodes_bears_no_lumped_load() -> None:
+def test_lumped_load_on_block_without_inner_nodes_is_refused() -> None:
     with pytest.raises(SceneError, match="has no inner nodes"):
         system_of(modal_wall(patch()), loads="inner")
 
@@ -95,41 +95,41 @@ def test_a_block_without_inner_nodes_bears_no_lumped_load() -> None:
 @pytest.mark.parametrize("young", [5e9, 5e10, 1e12, *at_length(1e10, 2e10, 2e11)])
 @pytest.mark.parametrize(("height", "modes"), [(1.44, "all"), (1.44, None), (0.72, None)])
 def test_mass_scaling_keeps_the_first_twenty_frequencies(height: float, modes: ModeCount | None, young: float) -> None:
-    """Of the square panel and of one half as high."""
+    """For the square panel and for one of half its height."""
     scene = panel(wall__height=height, joint__mortar=MORTAR, block__young=young)
-    assert _largest_slowing(scene, modes) < HELD
+    assert _largest_slowing(scene, modes) < MAX_FREQUENCY_LOSS
 
 
 @pytest.mark.parametrize("young", [5e9, 5e10, 1e12, *at_length(1e10, 2e10, 1e11)])
 @pytest.mark.parametrize("name", ["panel-01", "panel-04", "panel-12", "wall-w1", "wall-w2", "wall-w3"])
 def test_mass_scaling_keeps_the_first_twenty_frequencies_of_published_walls(name: str, young: float) -> None:
-    assert _largest_slowing(of_stiffness(name, young)) < HELD
+    assert _largest_slowing(of_stiffness(name, young)) < MAX_FREQUENCY_LOSS
 
 
 @pytest.mark.parametrize("young", [5e9, 2e10, 1e11, 1e12])
 @pytest.mark.parametrize(("length", "height"), [(0.48, 0.24), (0.48, 0.36), (0.72, 0.36), (0.24, 1.44), (2.4, 0.12)])
-def test_mass_scaling_keeps_the_first_twenty_frequencies_of_walls_of_ten_blocks_or_more(
+def test_mass_scaling_keeps_the_first_twenty_frequencies_of_small_walls(
     length: float, height: float, young: float
 ) -> None:
-    """The twentieth of their thirty or more is high in the spectrum: masses are scaled less for it."""
+    """Ten blocks or more: the twentieth of thirty or more rigid modes is high in the spectrum, so masses scale less."""
     scene = panel(wall__length=length, wall__height=height, joint__mortar=MORTAR, block__young=young)
     assert (~scene.fixed).sum() >= 10
-    assert _largest_slowing(scene) < HELD
+    assert _largest_slowing(scene) < MAX_FREQUENCY_LOSS
 
 
 @pytest.mark.parametrize("young", [1e11, *at_length(1e10, 1e12)])
-def test_large_walls_lose_little_though_nobody_looks(monkeypatch: pytest.MonkeyPatch, young: float) -> None:
-    """Panel-07, of 588 blocks: a quarter of what scaling may take at most."""
-    monkeypatch.setattr("fem_interface.mass_scaling.LARGE", 0)
-    assert _largest_slowing(of_stiffness("panel-07", young)) < HELD / 4
+def test_mass_scaling_of_large_walls_is_safe_without_check(monkeypatch: pytest.MonkeyPatch, young: float) -> None:
+    """Panel-07, with 588 blocks: a quarter of the largest decrease that mass scaling may cause."""
+    monkeypatch.setattr("fem_interface.mass_scaling.LARGE_WALL", 0)
+    assert _largest_slowing(of_stiffness("panel-07", young)) < MAX_FREQUENCY_LOSS / 4
 
 
 @pytest.mark.parametrize("young", [2e9, 1e10, 1e12])
 @pytest.mark.parametrize(("piers", "courses"), [(2, 1), (6, 1), (8, 1), (3, 2), (20, 2), *at_length((2, 70))])
 def test_mass_scaling_keeps_the_lowest_frequencies_of_equal_piers(piers: int, courses: int, young: float) -> None:
-    """Each of which comes as often as there are piers; of walls of less than ten blocks, two thirds of the rigid ones'.
+    """Each frequency occurs once per pier; for fewer than ten blocks, two thirds of the rigid-body frequencies.
 
-    Frequencies of the dense matrices.
+    Frequencies are those of the dense matrices.
     """
     blocks = [rectangle(0.3 * pier, 0.12 * course, 0.24, 0.12) for course in range(courses) for pier in range(piers)]
     scene = replace_blocks(panel(joint__mortar=MORTAR, block__young=young), blocks)
@@ -138,15 +138,15 @@ def test_mass_scaling_keeps_the_lowest_frequencies_of_equal_piers(piers: int, co
     system, bare = system_of(found), system_of(found, mass_scaling=False)
     assert system.mass == pytest.approx(scaled.mass, rel=1e-12)
     exact, slowed = (_dense_frequencies(each, min(20, 2 * piers * courses)) for each in (bare, system))
-    assert (1 - slowed / exact).max() < HELD
+    assert (1 - slowed / exact).max() < MAX_FREQUENCY_LOSS
     slowing = frequency_shift(found, len(exact), scaled.frequency_squared)
     assert slowing(scaled.mass) == pytest.approx((1 - slowed / exact).max(), abs=1e-6)
 
 
 @pytest.mark.parametrize("cracks", ["joints", "blocks"])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_the_stiffness_that_frequencies_are_of_is_that_of_a_step(make: Any, cracks: Cracks) -> None:
-    """Assembled from the jumps of the nodes, and found from those that each mode makes in a step."""
+def test_modal_stiffness_is_that_of_time_steps(make: Any, cracks: Cracks) -> None:
+    """Assembled from nodal jumps, against the jumps that each mode causes in a time step."""
     scene = make()
     if cracks == "blocks":
         scene = replace(scene, joint_materials=(scene.joint, replace(scene.joint, name="inner_joint")))
@@ -156,7 +156,7 @@ def test_the_stiffness_that_frequencies_are_of_is_that_of_a_step(make: Any, crac
 
 
 def _largest_slowing(scene: Scene, modes: ModeCount | None = None) -> float:
-    """Largest part by which mass scaling lowers one of the first twenty frequencies; it raises none."""
+    """Largest relative decrease of one of the first twenty frequencies by mass scaling; none increases."""
     found = modal_wall(scene, modes=modes)
     scaled = scaled_modes(found, 0.05)
     K = modal_stiffness(found)
@@ -166,11 +166,11 @@ def _largest_slowing(scene: Scene, modes: ModeCount | None = None) -> float:
 
 
 @pytest.mark.parametrize(("modes", "shorter"), [(6, 0.01), ("all", 0.01), (None, 0.15)])
-def test_stiff_blocks_take_the_step_of_rigid_ones(modes: ModeCount | None, shorter: float) -> None:
-    """At 1000 GPa mass scaling gives the step of rigid blocks; without it it is twenty times shorter.
+def test_stiff_blocks_have_step_of_rigid_blocks(modes: ModeCount | None, shorter: float) -> None:
+    """At 1000 GPa mass scaling gives the step of rigid blocks; without it the step is more than 15 times shorter.
 
-    Where blocks bend as they should they do so at less than twice the frequency of rigid ones on their joints, and
-    the damping of such a mode costs a little of the step.
+    With modes that bend accurately, blocks bend at less than twice the frequency of rigid blocks on their joints, and
+    the damping of such a mode reduces the step slightly.
     """
     scene = panel(joint__mortar=MORTAR, block__young=1e12)
     rigid = system_of(modal_wall(scene, modes=3)).interface.frequency_squared
@@ -180,8 +180,8 @@ def test_stiff_blocks_take_the_step_of_rigid_ones(modes: ModeCount | None, short
 
 
 @pytest.mark.parametrize("young", [1e9, 1e12])
-def test_statics_do_not_feel_the_mass(young: float) -> None:
-    """A glued wall at rest has the displacements of the sparse solution, to 1e-6 of the largest."""
+def test_statics_do_not_depend_on_mass(young: float) -> None:
+    """A bonded wall at rest has the displacements of the sparse solution, to 1e-6 of the largest."""
     scene = wall(young, joint={**GLUE})
     found = modal_wall(scene, modes="all")
     system = system_of(found)
@@ -207,23 +207,23 @@ def test_statics_do_not_feel_the_mass(young: float) -> None:
     ],
     ids=["wall-w1, 10 GPa", "2 x 6 bricks", "wall-w1, 100 GPa", "panel-04, 100 GPa"],
 )
-def test_mass_scaling_leaves_a_pushed_wall_where_it_is(scene: Scene, highest: float) -> None:
-    """Displacement under loads that grow slowly to 85 % of collapse, joints open and slid: as without it, to 0.2 %.
+def test_mass_scaling_keeps_displacements_of_pushed_wall(scene: Scene, highest: float) -> None:
+    """Under loads growing slowly to 85 % of collapse, with open and slipped joints: the same as without, to 0.2 %.
 
-    Loads put on at once, the weight too, make joints slip in another order at each time step.
+    Suddenly applied loads, including the weight, would make joints slip in another order for each time step.
     """
     rows = []
     loads = np.linspace(0.0, highest, 6)
     for on in (True, False):
         run = Run(system_of(modal_wall(scene), mass_scaling=on))
         state, criteria = State.at_rest(run.system), Criteria(collapse=1.0, rest=1e-6, budget=20_000_000)
-        pieces = round(SLOWLY / run.dt / 20)
+        pieces = round(GROWTH_TIME / run.dt / 20)
         for piece in range(pieces):
             run.hold(state, 0.0, 20, dead=(piece + 0.5) / pieces)
         assert settle(run, state, 0.0, criteria) == "stable"
         row = [run.system.control @ state.motion]
         for before, multiplier in pairwise(loads):
-            ramp(run, state, before, multiplier, round(SLOWLY / run.dt))
+            ramp(run, state, before, multiplier, round(GROWTH_TIME / run.dt))
             assert settle(run, state, multiplier, criteria) == "stable"
             row.append(run.system.control @ state.motion)
         rows.append(row)
@@ -234,8 +234,8 @@ def test_mass_scaling_leaves_a_pushed_wall_where_it_is(scene: Scene, highest: fl
 
 
 @pytest.mark.parametrize("young", [1e10, 1e12])
-def test_statics_of_default_modes_do_not_feel_the_scaling(young: float) -> None:
-    """A glued wall at rest with and without mass scaling, to 1e-6 of the largest."""
+def test_statics_of_default_modes_do_not_depend_on_mass_scaling(young: float) -> None:
+    """A bonded wall at rest with and without mass scaling, to 1e-6 of the largest displacement."""
     motions = []
     for on in (True, False):
         run = Run(system_of(modal_wall(wall(young, joint={**GLUE})), mass_scaling=on))

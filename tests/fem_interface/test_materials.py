@@ -1,4 +1,4 @@
-"""Walls of several materials: stiffness and mass block by block, strength, inset and fracture joint by joint."""
+"""Walls of several materials: stiffness and mass per block, strength, inset and fracture energies per joint."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ PUSHED = {"gravity": 0.0, "live": {"kind": "point", "at": [0.0, 0.1], "force": [
 
 
 def column(**changes: Any) -> Scene:
-    """Stone under oak on lime mortar, each 0.4 × 0.175 m and 0.12 m thick, the stone on cement mortar."""
+    """A stone block on cement mortar under an oak block on lime mortar, both 0.4 × 0.175 m and 0.12 m thick."""
     tables: dict[str, Any] = {
         "block": {"density": 1800.0, "young": 2e9},
         "joint": {"friction": 0.6, "mortar": MORTAR},
@@ -37,8 +37,8 @@ def column(**changes: Any) -> Scene:
 
 
 @pytest.mark.parametrize("modes", [6, "all"])
-def test_a_column_shortens_by_the_sum_of_its_parts(modes: Any) -> None:
-    """u = N Σ h / (E A) + N Σ 1 / (k A), under a beam that presses evenly."""
+def test_shortening_of_column_is_sum_of_its_parts(modes: Any) -> None:
+    """u = N Σ h / (E A) + N Σ 1 / (k A), under uniform pressure of a beam."""
     beam = {"height": 0.1, "condition": "level", "force": [0, -1e4]}
     scene = column(beam=beam, load=PUSHED, joints={"lime": {"friction": 0.5, "mortar": LIME}})
     run = Run(system_of(modal_wall(scene, modes=modes)))
@@ -56,12 +56,12 @@ def test_a_column_shortens_by_the_sum_of_its_parts(modes: Any) -> None:
 
 
 def _mass(wall: ModalWall) -> float:
-    """Mass of what moves."""
+    """Mass of the moving blocks."""
     return float(sum(wall.mass[wall.rigid[block, 0]] for block in np.flatnonzero(~wall.scene.fixed)))
 
 
 @pytest.mark.parametrize("loads", ["consistent", "inner"])
-def test_pieces_of_blocks_that_crack_weigh_what_their_block_does(loads: Any) -> None:
+def test_pieces_of_cracking_blocks_have_weight_of_their_block(loads: Any) -> None:
     scene = column(inner_joint={"friction": 0.6, "cohesion": 1e9, "tensile_strength": 1e9, "mortar": MORTAR})
     wall = modal_wall(scene, 2, cracks="blocks")
     exact = scene.mass[~scene.fixed].sum()
@@ -95,14 +95,14 @@ def test_fracture_energies_follow_from_each_joints_own_mortar() -> None:
         assert (found.fracture_energy_1, found.fracture_energy_2) == pytest.approx(exact)
 
 
-def test_a_joint_whose_mortar_is_missing_is_refused_by_its_name() -> None:
+def test_missing_mortar_is_refused_by_joint_name() -> None:
     lime = {"friction": 0.5, "normal_stiffness": 1e10, "shear_stiffness": 1e10}
     with pytest.raises(SceneError, match=r"joints\.lime\.mortar: is missing"):
         fractured(column(joints={"lime": lime}), "corrected")
 
 
-def test_a_block_slides_on_the_weaker_of_its_joints() -> None:
-    """Oak on dry lime of 0.3 slides at 0.3, and stone under it at 0.6 would not."""
+def test_block_slides_on_weaker_joint() -> None:
+    """Oak on dry lime mortar slides at 0.3; the stone block below, at 0.6, does not move."""
     scene = column(joints={"lime": {"friction": 0.3, "mortar": LIME}})
     outcome = fem(scene, 3e-3)
     assert outcome.lower is not None

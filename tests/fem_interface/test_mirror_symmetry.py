@@ -1,4 +1,4 @@
-"""Folded tables of block displacements: against the tables themselves, and kernels with them against those without."""
+"""Mirror-folded tables of block displacements: against the tables themselves; kernels with and without folding."""
 
 from typing import Any, cast
 
@@ -24,7 +24,7 @@ OUTLINE = np.array([[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1]])
 
 
 def unfolded(found: Folded) -> Array:
-    """The table that was folded."""
+    """The original table, recovered from the folded one."""
     table = found.table.copy()
     for a, b in found.pairs:
         table[a], table[b] = table[a] + table[b], table[a] - table[b]
@@ -38,10 +38,10 @@ def unfolded(found: Folded) -> Array:
     drop=st.booleans(),
     seed=st.integers(0, 1000),
 )
-def test_whatever_is_folded_unfolds(
+def test_folding_is_invertible(
     size: tuple[float, float], corner: tuple[float, float], turn: int, drop: bool, seed: int
 ) -> None:
-    """Any table, of modes that have no symmetry too, at nodes that face each other across two axes, one or none."""
+    """Any table, also of modes without symmetry, with nodes facing each other across two axes, one or none."""
     points = np.roll(OUTLINE * size + corner, turn, axis=0)[: 5 if drop else 6]
     table = np.random.default_rng(seed).normal(size=(2 * len(points), 4))
     found = folded(points, table)
@@ -64,8 +64,8 @@ def _tables(count: ModeCount, height: float) -> tuple[Array, Array]:
 @pytest.mark.parametrize("count", [3, 6, 10, 20, "all"])
 @pytest.mark.parametrize("height", [0.06, 0.12, 0.24])
 def test_modes_of_a_rectangle_are_even_or_odd_about_its_axes(count: ModeCount, height: float) -> None:
-    """Each in one of four ways, so that it has at most a quarter of its entries, and one for nodes on an axis; a
-    square's, too, of which two may be alike."""
+    """Each in one of four ways, so a mode has at most a quarter of the entries, and one for nodes on an axis; also the
+    modes of a square, two of which may be equal."""
     points, table = _tables(count, height)
     found = folded(points, table)
     assert found.worth_it
@@ -73,15 +73,15 @@ def test_modes_of_a_rectangle_are_even_or_odd_about_its_axes(count: ModeCount, h
     assert np.count_nonzero(found.table, axis=0).max() <= len(table) / 4 + 1
 
 
-def test_an_irregular_block_is_left_as_it_is() -> None:
+def test_irregular_block_is_not_folded() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.1], [0.9, 0.8], [0.2, 0.7]])
     found = folded(points, np.ones((8, 3)))
     assert len(found.pairs) == 0
     assert fold_of_many(1000, points, np.ones((8, 3))) is None
 
 
-def test_nodes_in_one_place_are_left_as_they_are() -> None:
-    """Which of them faces which is not to be told."""
+def test_coincident_nodes_unfold() -> None:
+    """It is undefined which of the coincident nodes faces another one."""
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     table = np.random.default_rng(0).normal(size=(10, 3))
     assert unfolded(folded(points, table)) == pytest.approx(table, abs=1e-12)
@@ -89,11 +89,11 @@ def test_nodes_in_one_place_are_left_as_they_are() -> None:
 
 @pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"support__kind": "pinned-corners"}])
 @pytest.mark.parametrize("count", [3, 10, "all"])
-def test_kernels_do_not_mind_whether_tables_are_folded(
+def test_kernels_do_not_depend_on_folding(
     monkeypatch: pytest.MonkeyPatch, count: ModeCount, changes: dict[str, Any]
 ) -> None:
     def system(fewest: int) -> BlockSystem:
-        monkeypatch.setattr(folding, "FEWEST", fewest)
+        monkeypatch.setattr(folding, "FEWEST_BLOCKS", fewest)
         return system_of(modal_wall(panel(joint__mortar=MORTAR, block__young=1e10, **changes), modes=count))
 
     def answers(system: BlockSystem) -> tuple[Array, Array, Array]:
@@ -103,7 +103,7 @@ def test_kernels_do_not_mind_whether_tables_are_folded(
         system.interface.gather(motion, tuple(system.interface.geometry), opening, slip)
         force = rng.normal(size=len(motion))
         system.interface.scatter(*rng.normal(size=(2, len(opening))), tuple(system.interface.geometry), force)
-        # The last one stands for all that does not move, and nothing counts there.
+        # The last entry stands for all fixed freedoms and does not count.
         return opening, slip, force[:-1]
 
     plain, with_folds = system(10**9), system(1)

@@ -1,4 +1,4 @@
-"""The model `fem`: stiff blocks beside rigid ones, published walls, and refusals."""
+"""The model `fem`: stiff blocks against rigid blocks, published walls, and refusals."""
 
 from typing import Any, Literal
 
@@ -24,8 +24,8 @@ from tests.walls import courses, panel
 from .walls import GLUE, MORTAR, joint_stiffness_of, wall, whole
 
 
-def beside_rigid_blocks(scene: Scene, within: float, **settings: Any) -> tuple[Outcome, Outcome]:
-    """Outcomes of `fem` and of `dem-dynamic`, whose multipliers are within a relative distance of each other."""
+def compared_with_rigid_blocks(scene: Scene, within: float, **settings: Any) -> tuple[Outcome, Outcome]:
+    """Outcomes of `fem` and of `dem-dynamic`, whose multipliers agree within a relative difference."""
     ours, theirs = fem(scene, 0.005, **settings), dem_dynamic(scene, 0.005)
     assert ours.status == theirs.status == "collapse"
     assert ours.multiplier == pytest.approx(theirs.multiplier, rel=within)
@@ -33,10 +33,10 @@ def beside_rigid_blocks(scene: Scene, within: float, **settings: Any) -> tuple[O
 
 
 @pytest.mark.parametrize("changes", [{"wall__block_width": 0.06, "wall__length": 0.24}, {"joint__cohesion": 500.0}])
-def test_stiff_blocks_fall_at_the_load_of_rigid_ones(changes: dict[str, Any]) -> None:
+def test_stiff_blocks_have_limit_load_of_rigid_blocks(changes: dict[str, Any]) -> None:
     """E = 1000 GPa: λ within 1 % of `dem-dynamic`, with the same joint points."""
     scene = wall(1e12, 0.0, support__kind="fixed-first-course", **changes)
-    ours, theirs = beside_rigid_blocks(scene, 0.01)
+    ours, theirs = compared_with_rigid_blocks(scene, 0.01)
     assert "scaled" in ours.message
     assert ours.motion.shape == theirs.motion.shape
     assert ours.force.shape == theirs.force.shape
@@ -52,15 +52,15 @@ def test_stiff_blocks_fall_at_the_load_of_rigid_ones(changes: dict[str, Any]) ->
         *(pytest.param(f"point-load-{k}", marks=pytest.mark.long) for k in (4, 2, 1, "quarter")),
     ],
 )
-def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(name: str) -> None:
-    """The paper's panels, E = 1000 GPa: λ within 1 % of `dem-dynamic` where both have the same joint points.
+def test_panels_of_stiff_blocks_have_limit_load_of_rigid_blocks(name: str) -> None:
+    """The paper's panels, E = 1000 GPa: λ within 1 % of `dem-dynamic` if both have the same joint points.
 
-    And not above the associated bound. But for panels 7 and 11, of the smallest blocks, whose histories turn on the
-    last bit of a number, and panel-12, below.
+    And not above the associated bound. Except panels 7 and 11, with the smallest blocks, whose histories depend on
+    rounding, and panel-12, below.
     """
     scene = published_scene(name)
     assert scene.block.young == 1e12
-    ours, _ = beside_rigid_blocks(scene, 0.01, points="joints")
+    ours, _ = compared_with_rigid_blocks(scene, 0.01, points="joints")
     bound = limit(scene).upper
     assert ours.lower is not None
     assert bound is not None
@@ -68,10 +68,10 @@ def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(name: str) -> Non
 
 
 @pytest.mark.long
-def test_panel_12_takes_either_of_two_branches_whose_collapse_is_certified() -> None:
-    """Rigid blocks, and those with their joint points, fall 7 % apart at this pace (docs/fem-study.md)."""
+def test_panel_12_follows_one_of_two_certified_branches() -> None:
+    """`fem` and `dem-dynamic`, with the same joint points, differ by 7 % at this loading rate (docs/fem-study.md)."""
     scene = published_scene("panel-12")
-    (low, high), digit = (0.0748536, 0.0985747), 1e-6  # `limit_nonassociated`: collapse at every load between them
+    (low, high), digit = (0.0748536, 0.0985747), 1e-6  # `limit_nonassociated`: certified collapse at every load between
     for outcome in (fem(scene, 0.005, points="joints"), dem_dynamic(scene, 0.005)):
         assert outcome.lower is not None
         assert outcome.upper is not None
@@ -80,25 +80,25 @@ def test_panel_12_takes_either_of_two_branches_whose_collapse_is_certified() -> 
 
 @pytest.mark.long
 @pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 6, 8, 9])
-def test_a_finer_mesh_leaves_the_load_where_it_is(number: int) -> None:
-    """Two cells in half a block along the course and in its height, joint points of rigid blocks: within 1 %.
+def test_finer_mesh_does_not_change_limit_load(number: int) -> None:
+    """Two cells per half block along the course and over its height, joint points of rigid blocks: within 1 %.
 
-    But for panel-12, which takes its other branch (docs/fem-study.md).
+    Except panel-12, which follows its other branch (docs/fem-study.md).
     """
-    beside_rigid_blocks(published_scene(f"panel-{number:02d}"), 0.01, cells=2, points="joints")
+    compared_with_rigid_blocks(published_scene(f"panel-{number:02d}"), 0.01, cells=2, points="joints")
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 6, 8, 9])
-def test_more_joint_points_on_a_finer_mesh_move_the_load_by_little(number: int) -> None:
-    """Points on the elements of that mesh: within 3 %, but for panels 7 and 12, whose friction has other ways then."""
-    beside_rigid_blocks(published_scene(f"panel-{number:02d}"), 0.03, cells=2)
+def test_more_joint_points_on_finer_mesh_change_limit_load_slightly(number: int) -> None:
+    """Points on the elements of that mesh: within 3 %, except panels 7 and 12, where friction then acts differently."""
+    compared_with_rigid_blocks(published_scene(f"panel-{number:02d}"), 0.03, cells=2)
 
 
 @pytest.mark.long
-def test_loads_of_panel_7_scatter_as_far_apart_in_one_model_as_in_two() -> None:
-    """Runs whose density differs by parts in 10⁹ come to brackets all over a range; the models' ranges overlap, and
-    their means lie within 1 %."""
+def test_limit_loads_of_panel_7_scatter_alike_in_both_models() -> None:
+    """Runs whose density differs by 1e-9 give scattered brackets; the ranges of the two models overlap, and their
+    means agree within 1 %."""
     scene = published_scene("panel-07")
     density = scene.block.density
     walls = [scene.with_block(density=density * (1 + k * 1e-9)) for k in range(5)]
@@ -118,8 +118,8 @@ def test_loads_of_panel_7_scatter_as_far_apart_in_one_model_as_in_two() -> None:
 def test_a_block_topples_about_the_last_point_of_its_joint(rule: Rule, cells: int) -> None:
     """b × h on a rough base topples at b / h with Lobatto points.
 
-    With two Gauss points the outermost lies (1 − 3^{-1/2}) / 2 of an element in, so it topples 42, 21 and 11 % early
-    on 1, 2 and 4 elements.
+    With two Gauss points the outermost lies (1 − 3^{-1/2}) / 2 of an element inside, so the block topples 42, 21 and
+    11 % too early on 1, 2 and 4 elements.
     """
     scene = courses([[0.5]], 0.24, 0.36, joint__mortar=MORTAR, joint__friction=2.0)
     early = (1 + rule.nodes[0]) / cells
@@ -133,7 +133,7 @@ def test_a_block_topples_about_the_last_point_of_its_joint(rule: Rule, cells: in
 
 @pytest.mark.parametrize("on", ["elements", "joints"])
 def test_contact_forces_carry_the_weight(on: Literal["elements", "joints"]) -> None:
-    """Listed joint by joint: those of the base add up to the weight of what stands on it."""
+    """Listed joint by joint: the forces of the base joint add up to the weight above."""
     scene = wall(1e12)
     outcome = fem(scene, points=on)
     of_point = np.repeat(np.arange(len(scene.joints)), 2)
@@ -156,8 +156,8 @@ def test_an_unknown_number_of_modes_is_refused() -> None:
         system_of(modal_wall(wall(), modes=4))
 
 
-def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> None:
-    """The displacements of the sparse solution, to 1e-6 of the largest, and the wall locks."""
+def test_blocks_bonded_to_pinned_block_only_deform() -> None:
+    """The displacements of the sparse solution, to 1e-6 of the largest, and the wall is self-locking."""
     live = {"kind": "point", "at": [0.0, 0.12], "force": [0, -1]}
     size: dict[str, Any] = {"wall__length": 0.24, "wall__height": 0.12, "support__kind": "pinned-corners"}
     scene = wall(1e10, **size, joint={**GLUE}, load={"gravity": 0.0, "live": live})
@@ -177,7 +177,7 @@ def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> Non
     u = found.displacement(state.motion).ravel()
     assert np.abs(u[free] - exact).max() < 1e-6 * np.abs(exact).max()
     assert np.abs(u[~free]).max() < 1e-12 * np.abs(u).max()
-    assert fem(scene, budget=2000).status == "unbounded"  # it asks itself whether joint forces balance any load
+    assert fem(scene, budget=2000).status == "unbounded"  # it checks whether joint forces can balance any load
 
 
 @pytest.mark.parametrize(
@@ -188,8 +188,8 @@ def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> Non
         pytest.param("wall-w3", 0.3374, marks=pytest.mark.long),
     ],
 )
-def test_walls_with_contacts_20_mm_in_fall_at_the_published_load(name: str, published: float) -> None:
-    """Ferris & Tin-Loi's walls with friction: numerically unique with contacts moved in, within 1.5 %."""
+def test_walls_with_inset_contacts_have_published_limit_load(name: str, published: float) -> None:
+    """Ferris & Tin-Loi's walls with friction: numerically unique with contacts inset by 20 mm, within 1.5 %."""
     scene = published_scene(name)
     scene = scene.with_block(density=1800.0, young=1e12, poisson=0.0).with_joint(inset=0.02)
     outcome = fem(scene, 0.005)

@@ -1,4 +1,4 @@
-"""Modes and templates of blocks, and the kernels that work with them."""
+"""Modes and templates of blocks, and their kernels."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ from .walls import MORTAR, patch, triangle_wall, wall
 @pytest.mark.parametrize("count", [3, 6, 9, 20, "all"])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
 def test_mass_and_stiffness_are_diagonal_in_the_modes(make: Any, count: ModeCount) -> None:
-    """On triangles of the modes' own degree, at whose vertices the wall's joints see them."""
+    """For elements of the modes' own degree; the wall's joints use their values at the vertices."""
     scene = make()
     found = modal_wall(scene, 1, count)
     assert scene.block.young is not None
@@ -42,7 +42,7 @@ def test_mass_and_stiffness_are_diagonal_in_the_modes(make: Any, count: ModeCoun
         assert np.abs(stiff - np.diag(whole.stiffness)).max() <= 1e-11 * np.abs(K).max()
         assert whole.mass[0] == pytest.approx(scene.mass[block], rel=1e-12)
         assert np.abs(modes.shape - whole.shape[: 2 * len(corners)]).max() < 1e-9 * np.abs(whole.shape).max()
-        if count not in (3, "all"):  # polynomials of that degree and nothing else, all those of first degree among them
+        if count not in (3, "all"):  # exactly the polynomials of that degree, including all of degree 1
             span, first = polynomials(points, degree), polynomials(points, 1)
             left = whole.shape - span @ np.linalg.lstsq(span, whole.shape)[0]
             assert np.abs(left).max() < 1e-11 * np.abs(whole.shape).max()
@@ -51,8 +51,8 @@ def test_mass_and_stiffness_are_diagonal_in_the_modes(make: Any, count: ModeCoun
 
 
 @pytest.mark.parametrize("count", range(7, 21))
-def test_square_blocks_bend_one_way_as_easily_as_the_other(count: int) -> None:
-    """Where two modes are alike both are taken, so that a quarter turn leaves the block's flexibility as it is."""
+def test_square_blocks_have_equal_flexibility_in_both_directions(count: int) -> None:
+    """Of two equal modes both are taken, so a quarter turn leaves the block's flexibility unchanged."""
     side = {"wall__block_width": 0.06, "wall__length": 0.06, "wall__height": 0.06}
     found = modal_wall(panel(joint__mortar=MORTAR, block__young=1e10, **side), modes=count)
     points, modes = found.mesh.points[found.mesh.block == 0] - 0.03, found.templates[0].modes
@@ -66,10 +66,10 @@ def test_square_blocks_bend_one_way_as_easily_as_the_other(count: int) -> None:
     assert image @ image.T == pytest.approx(flexibility @ flexibility.T, abs=1e-9 * (flexibility**2).max())
 
 
-def test_modes_of_third_degree_hold_the_bending_of_beams() -> None:
-    """By a moment that varies with a shear force: displacements and energy to 1e-9.
+def test_modes_of_third_degree_contain_beam_bending() -> None:
+    """Bending by a moment that varies with a shear force: displacements and energy to 1e-9.
 
-    A beam of a material without lateral contraction: u = −(M + S x / 2) x y / EI + (S / GI) (y³ / 6 − h² y / 8) and
+    A beam with Poisson's ratio 0: u = −(M + S x / 2) x y / EI + (S / GI) (y³ / 6 − h² y / 8) and
     v = (M + S x / 3) x² / 2EI, energy ∫ (M + S x)² / 2EI + (6/5) S² / 2GA.
     """
     length, height, depth, young, moment, shear = 0.24, 0.06, 0.12, 1e9, 0.3, 2.0
@@ -91,7 +91,7 @@ def test_modes_of_third_degree_hold_the_bending_of_beams() -> None:
     assert 0.5 * modes.stiffness @ Q**2 == pytest.approx(energy, rel=1e-9)
 
 
-def test_congruent_blocks_share_a_template_and_blocks_of_their_own_shape_have_theirs() -> None:
+def test_congruent_blocks_share_a_template() -> None:
     assert len(modal_wall(wall()).templates) == 2  # whole and half blocks
     assert len(modal_wall(patch()).templates) == 4
 
@@ -99,7 +99,7 @@ def test_congruent_blocks_share_a_template_and_blocks_of_their_own_shape_have_th
 @pytest.mark.parametrize("cells", [1, 2])
 @pytest.mark.parametrize("count", [3, 6, 10, "all"])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_kernels_are_the_nodal_jump_operator_and_its_transpose(make: Any, count: ModeCount, cells: int) -> None:
+def test_kernels_equal_nodal_jump_operator_and_its_transpose(make: Any, count: ModeCount, cells: int) -> None:
     found = modal_wall(make(), cells, count, lobatto(3), "joints" if count == 6 else "elements")
     system = system_of(found)
     jump = nodal_jump(found.elements, len(found.mesh.points))
@@ -121,7 +121,7 @@ def test_kernels_are_the_nodal_jump_operator_and_its_transpose(make: Any, count:
     assert force @ motion == pytest.approx(-virtual, abs=1e-12 * np.abs(force).sum())
 
 
-def test_elements_of_a_wall_of_equal_blocks_come_in_long_runs() -> None:
+def test_elements_of_equal_blocks_come_in_long_runs() -> None:
     found = modal_wall(panel(joint__mortar=MORTAR, block__young=1e12))
     order, start = element_runs(found)
     assert (order == np.arange(len(order))).all()

@@ -1,4 +1,4 @@
-"""Operators of deformable blocks: against rigid kinematics and scikit-fem's own evaluation."""
+"""Operators of deformable blocks: against rigid kinematics and scikit-fem."""
 
 import math
 from typing import Any, Literal
@@ -45,7 +45,7 @@ def course_patterns(draw: st.DrawFn) -> list[list[float]]:
     on=st.sampled_from(["elements", "joints"]),
 )
 @settings(max_examples=30, derandomize=True)
-def test_rigid_motions_open_joints_as_rigid_blocks_do(
+def test_rigid_motions_give_jumps_of_rigid_blocks(
     pattern: list[list[float]], inset: float, cells: int, on: Literal["elements", "joints"]
 ) -> None:
     """B_fem R = B_dem at the same points, and RᵀMR = diag(m, m, J) with the consistent mass, K R = 0; all to 1e-12."""
@@ -67,7 +67,7 @@ def test_rigid_motions_open_joints_as_rigid_blocks_do(
 
 
 def same_points(ours: JointPoints, theirs: JointPoints) -> bool:
-    """Whether two sets of points are the same to 1e-12, in whatever order."""
+    """Whether two sets of points are equal to 1e-12, in any order."""
 
     def rows(points: JointPoints) -> Array:
         found = np.column_stack(
@@ -79,15 +79,15 @@ def same_points(ours: JointPoints, theirs: JointPoints) -> bool:
 
 
 @pytest.mark.parametrize("changes", [{}, {"joint__inset": 0.01}])
-def test_with_one_element_a_joint_the_points_are_those_of_rigid_blocks(changes: dict[str, Any]) -> None:
+def test_one_element_per_joint_has_points_of_rigid_blocks(changes: dict[str, Any]) -> None:
     scene = wall(support__kind="fixed-first-course", **changes)
     assert same_points(modal_wall(scene).elements.points, contact_points(scene))
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_on_whole_joints_the_points_are_those_of_rigid_blocks(make: Any, cells: int) -> None:
-    """On any mesh and support, and with an inset wider than an element."""
+def test_points_on_joints_are_those_of_rigid_blocks(make: Any, cells: int) -> None:
+    """For any mesh and support, also with an inset wider than an element."""
     scene = make()
     assert same_points(modal_wall(scene, cells, 3, points="joints").elements.points, contact_points(scene))
     inset = 0.45 * scene.joints.length.min()
@@ -101,7 +101,7 @@ def test_on_whole_joints_the_points_are_those_of_rigid_blocks(make: Any, cells: 
         assert (np.diff(along)[np.diff(listed) == 0] > 0).all()
 
 
-def test_points_on_anything_else_are_refused() -> None:
+def test_unknown_point_placement_is_refused() -> None:
     with pytest.raises(ValueError, match="points = 'nodes'"):
         modal_wall(wall(), points="nodes")  # type: ignore[arg-type]
 
@@ -110,10 +110,10 @@ def test_points_on_anything_else_are_refused() -> None:
 @pytest.mark.parametrize("rule", [lobatto(), lobatto(3), gauss(1), gauss(2), gauss(3)])
 @pytest.mark.parametrize("inset", [0.0, 0.004])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_jumps_are_those_of_scikit_fems_own_interpolation(
+def test_jumps_equal_scikit_fem_interpolation(
     make: Any, inset: float, rule: Rule, on: Literal["elements", "joints"]
 ) -> None:
-    """Displacements of both sides, probed in the two blocks' own meshes, for each rule."""
+    """Displacements of both sides, evaluated in the blocks' own meshes, for each rule."""
     scene = make()
     scene = scene.with_joint(inset=inset)
     found = modal_wall(scene, 2, 3, rule, on)
@@ -144,7 +144,7 @@ def test_an_inset_wider_than_a_joint_element_is_refused() -> None:
 
 @pytest.mark.parametrize("strain", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0.3, -1, 0.7)])
 def test_patch_of_irregular_blocks_carries_uniform_strain_exactly(strain: tuple[float, float, float]) -> None:
-    """Welded together and held along their outline, they have the uniform stress everywhere, to 1e-12."""
+    """Welded together and held along the outline, they have uniform stress everywhere, to 1e-12."""
     scene = patch()
     mesh = wall_mesh(scene)
     moving = ~scene.fixed[mesh.block]
@@ -193,14 +193,14 @@ BRICK, DEPTH, YOUNG = (0.24, 0.06), 0.12, 1e9
 
 
 def _beam(height: float) -> float:
-    """Deflection of a brick 240 mm long as a cantilever under a force of 1 N, after Timoshenko [m]."""
+    """Deflection of a brick 240 mm long as a Timoshenko cantilever under a force of 1 N [m]."""
     length = BRICK[0]
     bending = length**3 / (3 * YOUNG * DEPTH * height**3 / 12)
     return bending + length / (5 / 6 * YOUNG / 2 * DEPTH * height)
 
 
 def test_bending_error_of_constant_strain_falls_with_the_mesh(capsys: pytest.CaptureFixture[str]) -> None:
-    """All modes of a brick's triangles as a cantilever: below 20 % from four cells on, order 2."""
+    """A brick as a cantilever, with all modes of its triangles: below 20 % from four cells on, order 2."""
     length, height = BRICK
     scene = panel(wall__length=length, wall__height=height)
     errors = []
@@ -226,7 +226,7 @@ def test_bending_error_of_constant_strain_falls_with_the_mesh(capsys: pytest.Cap
 def test_bending_error_of_a_brick_on_the_default_mesh(
     height: float, most: float, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Held and loaded at the ends of its head joints, in the modes that `fem` takes."""
+    """Held and loaded at the ends of its head joints, with the modes that `fem` uses."""
     size = {"wall__block_height": height, "wall__length": BRICK[0], "wall__height": height}
     scene = panel(**size, joint__mortar=MORTAR, block__young=YOUNG)
     errors = {}
@@ -247,14 +247,14 @@ def test_bending_error_of_a_brick_on_the_default_mesh(
 
 
 def _held_response(stiffness: Array, held: Array, force: Array) -> Array:
-    """Coordinates ``(m,)`` under a modal force, with some displacements ``(n, m)`` held at zero."""
+    """Modal coordinates ``(m,)`` under a modal force, with some displacements ``(n, m)`` held at zero."""
     free = null_space(held)
     return np.asarray(free @ np.linalg.solve(free.T @ (stiffness[:, None] * free), free.T @ force))
 
 
 @pytest.mark.parametrize("share", [-0.45, 0.5, 0.99])
-def test_sides_of_a_slanted_joint_may_be_apart_by_the_contact_tolerance(share: float) -> None:
-    """Across the joint; what stands straight above one another is farther apart then. Weights are those of no gap."""
+def test_gap_of_slanted_joint_may_equal_contact_tolerance(share: float) -> None:
+    """Gap measured across the joint; vertically it is larger. The weights are those without a gap."""
     lower = np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.4], [0.0, 0.2]])
     upper = np.array([[0.0, 0.2], [0.2, 0.4], [0.2, 0.6], [0.0, 0.6]])
     shut = replace_blocks(patch(), [lower, upper])

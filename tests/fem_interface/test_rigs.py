@@ -1,4 +1,4 @@
-"""Walls of deformable blocks that a rig leads through finite displacements, against rigid ones and exact solutions."""
+"""Driven walls of deformable blocks at finite displacements, against rigid blocks and exact solutions."""
 
 import math
 from dataclasses import replace
@@ -23,13 +23,13 @@ STONE = {"density": 1000.0, "young": 1e10, "poisson": 0.2}
 
 
 def stone(courses: int = 1, length: float = 0.4, height: float = 0.6, **changes: Any) -> Scene:
-    """`rig` of stone."""
+    """The `rig` with blocks of stone."""
     return rig(courses, length, height, block=STONE, **changes)
 
 
 @pytest.mark.parametrize("line", ["moving", *at_length("fixed")])
-def test_a_rocking_block_takes_what_its_force_allows(line: str) -> None:
-    """As a rigid one does (`tests.contacts.test_rigs`), but for what it gives way itself: at small drifts only."""
+def test_rocking_block_has_exact_resistance(line: str) -> None:
+    """As a rigid block (`tests.contacts.test_rigs`), apart from its own deformation, which matters at small drifts."""
     b, at, n, d = 0.2, 0.6, 2e4, 0.04
     outcome = fem(
         stone(beam__force_line=line, beam__drive={"displacement": [0.05, 0], "at": at}), displacements="finite"
@@ -43,8 +43,8 @@ def test_a_rocking_block_takes_what_its_force_allows(line: str) -> None:
     assert vertical[len(vertical) // 2 :] == pytest.approx(n, rel=0.02)
 
 
-def test_blocks_with_three_modes_are_rigid_ones() -> None:
-    """A wall of several materials whose blocks split: the forces at its joints too, to 1e-3 of the largest."""
+def test_three_modes_equal_rigid_blocks() -> None:
+    """A wall of several materials with blocks that split: the force to 1 % at three drifts."""
     weak = {"friction": 0.4, "normal_stiffness": 2e9, "shear_stiffness": 1e9}
     scene = stone(
         3,
@@ -72,8 +72,8 @@ def test_blocks_with_three_modes_are_rigid_ones() -> None:
     ],
 )
 @pytest.mark.parametrize("cells", [1, *at_length(4)])
-def test_what_crushes_and_softens_is_spread_along_joints(far: float, strength: dict[str, float], cells: int) -> None:
-    """As along the joint of a rigid block, however fine the mesh: its nodes alone would bear 20 and 43 % more."""
+def test_crushing_and_softening_are_spread_along_joints(far: float, strength: dict[str, float], cells: int) -> None:
+    """As along the joint of a rigid block, on any mesh: contacts at the nodes only would carry 20 and 43 % more."""
     joint = {"friction": 0.9, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     scene = stone(beam__drive={"displacement": [far, 0], "at": 0.6}, joint=joint | strength)
     other = run_model("dem-dynamic", scene, displacements="finite")
@@ -86,7 +86,7 @@ def test_what_crushes_and_softens_is_spread_along_joints(far: float, strength: d
 @pytest.mark.parametrize("inset", [0.0, 0.002, 0.0075, 0.01, 0.013])
 @pytest.mark.parametrize("strength", [{}, {"compressive_strength": 1e6}])
 def test_contacts_have_the_area_of_their_joints(cells: int, inset: float, strength: dict[str, float]) -> None:
-    """Also where arcs of corners take up several of the facets, and half of one: 3.75 mm and more here."""
+    """Also if the corner arcs take up several facets, or half of one: 3.75 mm and more here."""
     joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, "inset": inset}
     scene = stone(3, 0.6, 0.12, wall__courses=[[1, 1], [0.5, 1, 0.5], [1, 1]], joint=joint | strength)
     contacts = DeformableContacts(node_outline(scene, cells)).undeformed
@@ -95,8 +95,8 @@ def test_contacts_have_the_area_of_their_joints(cells: int, inset: float, streng
     assert area == pytest.approx(scene.joints.length * scene.thickness, rel=1e-9)
 
 
-def test_points_between_nodes_move_as_the_mesh_does() -> None:
-    """On the straight line between two nodes of it, in any motion."""
+def test_points_between_nodes_move_with_mesh() -> None:
+    """On the straight line between two mesh nodes, for any motion."""
     scene = stone(2, 0.2, wall__courses=[[1, 1], [0.5, 1, 0.5]], joint__compressive_strength=1e6)
     blocks = node_outline(scene)
     motion = np.random.default_rng(3).normal(0.0, 1e-3, len(blocks.wall.mass))
@@ -113,15 +113,15 @@ def test_points_between_nodes_move_as_the_mesh_does() -> None:
     assert geometry.contact[:, :2] == pytest.approx((1 - share) * at + share * after, abs=1e-12)
 
 
-def test_small_drifts_are_those_of_small_displacements() -> None:
+def test_small_drifts_agree_with_small_displacements() -> None:
     scene = stone(2, 0.4, 0.4, beam__drive={"displacement": [2e-5, 0], "at": 0.4}, joint__friction=0.6)
     far, near = fem(scene, displacements="finite"), fem(scene)
     assert force_at(far, 1.9e-5) == pytest.approx(force_at(near, 1.9e-5), rel=0.01)
     assert far.force.sum(axis=0) == pytest.approx(near.force.sum(axis=0), rel=0.01)
 
 
-def test_a_block_that_splits_spends_its_fracture_energy() -> None:
-    """G_I times the area to 1e-6, node by node, through searches for contacts."""
+def test_splitting_block_dissipates_its_fracture_energy() -> None:
+    """G_I times the area to 1e-6, at every node, through contact detections."""
     blocks = node_outline(stone(inner_joint=GLUE), 2, 3)
     system = finite_system(blocks)
     motion = np.zeros_like(system.mass)
@@ -144,13 +144,13 @@ def test_a_block_that_splits_spends_its_fracture_energy() -> None:
     ("parameters", "message"),
     [
         ({"displacements": "large"}, "model fem: displacements = .large.: must be one of"),
-        ({"cracks": "blocks"}, "model fem: cracks = .blocks.: is not taken at finite displacements"),
+        ({"cracks": "blocks"}, "model fem: cracks = .blocks.: is not supported at finite displacements"),
         ({"points": "joints"}, "model fem: points"),
         ({"loads": "inner"}, "model fem: loads"),
         ({"energies": "printed"}, "model fem: energies"),
     ],
 )
-def test_what_is_not_taken_is_refused(parameters: dict[str, Any], message: str) -> None:
+def test_unsupported_parameters_are_refused(parameters: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match=message):
         run_model("fem", stone(), **{"displacements": "finite", **parameters})
 
@@ -163,6 +163,6 @@ def test_what_is_not_taken_is_refused(parameters: dict[str, Any], message: str) 
         ({"inner_joint": GLUE | {"inset": 0.01}}, "inner_joint.inset"),
     ],
 )
-def test_scenes_that_are_not_followed_so_far_are_refused(changes: dict[str, Any], key: str) -> None:
+def test_unsupported_scenes_are_refused(changes: dict[str, Any], key: str) -> None:
     with pytest.raises(SceneError, match=key):
         run_model("fem", stone(**changes), displacements="finite")

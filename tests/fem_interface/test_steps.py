@@ -1,4 +1,4 @@
-"""Time steps of deformable blocks: a nodal form of every step, rigid blocks, and bounds of the frequency."""
+"""Time steps of deformable blocks: against nodal steps, rigid blocks, and bounds on the frequency."""
 
 import math
 from typing import Any, Literal
@@ -21,7 +21,7 @@ from .walls import MORTAR, patch, pushed, triangle_wall, wall
 
 
 @pytest.mark.parametrize("changes", [{}, {"joint__cohesion": 50.0, "joint__inset": 0.01}])
-def test_modal_step_is_the_nodal_step(changes: dict[str, Any]) -> None:
+def test_modal_step_equals_nodal_step(changes: dict[str, Any]) -> None:
     """All modes, no mass scaling: the same displacements to 1e-12 for 500 steps, while joints slide and open."""
     scene = wall(5e9, **changes)
     found = modal_wall(scene, modes="all")
@@ -44,12 +44,12 @@ def test_modal_step_is_the_nodal_step(changes: dict[str, Any]) -> None:
     [("fixed-first-course", 1, "elements"), ("base", 1, "joints"), ("base", 2, "joints")],
 )
 @pytest.mark.parametrize("changes", [{}, {"joint__inset": 0.01}, {"wall__block_height": 0.24, "joint__cohesion": 10.0}])
-def test_three_modes_are_rigid_blocks(
+def test_three_modes_step_as_rigid_blocks(
     changes: dict[str, Any], support: str, cells: int, on: Literal["elements", "joints"]
 ) -> None:
-    """The same points, masses, loads, bound and steps as `dem-dynamic`, to 1e-12, while joints slide and open.
+    """The same points, masses, loads, frequency bound and steps as `dem-dynamic`, to 1e-12, with slip and opening.
 
-    Without local damping, whose sign of a velocity that is zero but for rounding is anybody's guess.
+    Without local damping, which would depend on the arbitrary sign of velocities that are zero to rounding.
     """
     scene = panel(joint__mortar=MORTAR, support__kind=support, **changes)
     ours, theirs = system_of(modal_wall(scene, cells, modes=3, points=on)), rigid_system(scene)
@@ -68,8 +68,8 @@ def test_three_modes_are_rigid_blocks(
 @pytest.mark.parametrize("young", [1e8, 1e10, 1e12])
 @pytest.mark.parametrize("mass_scaling", [True, False])
 @pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"joint__inset": 0.01}])
-def test_blocks_alone_bound_the_highest_frequency(changes: dict[str, Any], mass_scaling: bool, young: float) -> None:
-    """From above, and closely."""
+def test_single_block_frequency_bound_is_close(changes: dict[str, Any], mass_scaling: bool, young: float) -> None:
+    """Upper bound, and close to the exact value."""
     found = modal_wall(wall(young, **changes))
     scaled = scaled_modes(found, 0.0, mass_scaling=mass_scaling)
     root = 1 / np.sqrt(scaled.mass[np.isfinite(scaled.mass)])
@@ -80,8 +80,8 @@ def test_blocks_alone_bound_the_highest_frequency(changes: dict[str, Any], mass_
 
 @pytest.mark.parametrize("young", [1e9, 1e12])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_a_wall_at_the_stable_step_stays_bounded(make: Any, young: float) -> None:
-    """With local, joint and modal damping at work, and joints that never break."""
+def test_wall_at_stable_step_stays_bounded(make: Any, young: float) -> None:
+    """With local, joint and modal damping, and joints that never break."""
     scene = make()
     glue = {"friction": 0.6, "cohesion": 1e9, "tensile_strength": 1e9, "elasticity": Mortar(1e9, 0.2, 0.01)}
     scene = scene.with_block(young=young).with_joint(**glue)

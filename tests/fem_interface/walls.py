@@ -1,4 +1,4 @@
-"""Walls of deformable blocks that tests are about, and what is measured of them."""
+"""Test walls of deformable blocks, and measurements on them."""
 
 from typing import Any
 
@@ -26,7 +26,7 @@ def wall(young: float = 1e10, poisson: float = 0.2, **changes: Any) -> Scene:
 
 
 def patch() -> Scene:
-    """Four irregular quadrilaterals about one point, on a base: every block a shape of its own."""
+    """Four irregular quadrilaterals around one point, on a base: every block has its own shape."""
     x = np.array([[0.0, 0.6, 1.0], [0.0, 0.37, 1.0], [0.0, 0.55, 1.0]])
     y = np.array([[0.0, 0.0, 0.0], [0.45, 0.62, 0.5], [1.0, 1.0, 1.0]])
     corner = np.stack([x, y], axis=2)
@@ -63,15 +63,15 @@ def rigid_of_nodes(mesh: WallMesh, scene: Scene) -> Array:
 
 
 def whole(mesh: WallMesh, scene: Scene) -> tuple[csr_array, csr_array]:
-    """Stiffness and mass of all blocks together, assembled at once."""
+    """Stiffness and mass matrices of all blocks, assembled at once."""
     material = scene.block
     assert material.young is not None
     K = stiffness_matrix(mesh.points, mesh.triangles, material.young, material.poisson, scene.thickness)
     return K, mass_matrix(mesh.points, mesh.triangles, material.density, scene.thickness)
 
 
-def damped_without_giving_back(run: Run, state: State, load: float) -> None:
-    """Follow a load put on at once for 4000 steps: damping never gives energy back, and less than 2 % is lost."""
+def check_damping_dissipates(run: Run, state: State, load: float) -> None:
+    """Follow a sudden load for 4000 steps: damping never returns energy, and less than 2 % of it is unaccounted for."""
     damped = 0.0
     for _ in range(40):
         run.hold(state, load, 100, given=0.0)
@@ -91,7 +91,7 @@ def joint_stiffness_of(system: BlockSystem, opening: Any, slip: Any) -> csr_arra
 
 
 def check_dissipation(run: Run, steps: int) -> State:
-    """Push a wall harder and harder until it falls: no point ever gives back what it spent, and the ledger closes."""
+    """Increase the load until the wall collapses: no point returns dissipated work, and the energy balance closes."""
     state = State.at_rest(run.system)
     spent, damped = state.history[FRICTION_WORK].copy(), 0.0
     for k in range(60):

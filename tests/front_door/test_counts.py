@@ -1,4 +1,4 @@
-"""What tools/count_lines.py counts, on a tree small enough to count by hand."""
+"""Counts of tools/count_lines.py for a tree small enough to count by hand."""
 
 import runpy
 from pathlib import Path
@@ -11,7 +11,7 @@ TOOL = Path(__file__).parents[2] / "tools" / "count_lines.py"
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """A front door, two rooms that import each other, a method, tests, and an old room of a single file."""
+    """`runningbond` with two subpackages that import each other, a method, tests, and an old single-file module."""
     files = {
         "runningbond/__init__.py": "",
         "runningbond/compare/__init__.py": "",
@@ -33,7 +33,7 @@ def tree(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_small_tree_is_counted_as_by_hand(tree: Path) -> None:
+def test_counts_of_a_small_tree(tree: Path) -> None:
     counted: dict[str, Any] = dict(runpy.run_path(str(TOOL))["report"](tree))
     rooms = {"compare": 2, "scene": 5, "joints": 3, "dem": 2, "old": 1, "front door": 0}
     assert {name: counted[f"lines of {name}"] for name in rooms} == rooms

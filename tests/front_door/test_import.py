@@ -1,4 +1,4 @@
-"""The face of the package: lazy, listed, and safe beside a user's own files."""
+"""Import of the package: lazy, with listed names, and safe beside user files of the same names."""
 
 import os
 import subprocess
@@ -12,8 +12,8 @@ from setuptools import find_packages
 import runningbond as rb
 
 ROOT = Path(__file__).parents[2]
-DRAWING = {"matplotlib", "pyvista", "vtkmodules"}
-HEAVY = {"numpy", "scipy", "numba", "gmsh", "joblib", "shapely", "ezdxf", "pandas"} | DRAWING
+PLOTTING = {"matplotlib", "pyvista", "vtkmodules"}
+HEAVY = {"numpy", "scipy", "numba", "gmsh", "joblib", "shapely", "ezdxf", "pandas"} | PLOTTING
 METHODS = {"dem", "fem_interface", "homog", "meshing"}
 
 FIVE_LINES = """
@@ -29,14 +29,14 @@ print(limit(wall.scene).status)
 
 
 def python(*arguments: str, cwd: Path | None = None) -> str:
-    """What a fresh interpreter prints."""
+    """Output of a new interpreter."""
     surroundings = {**os.environ, "PYTHONPATH": str(ROOT)}
     answer = subprocess.run([sys.executable, *arguments], cwd=cwd, env=surroundings, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stderr
     return answer.stdout
 
 
-def test_import_loads_no_library_and_no_room() -> None:
+def test_import_loads_no_library_and_no_subpackage() -> None:
     loaded = python("-c", "import sys, runningbond; print(*sys.modules)").split()
     assert not HEAVY & {name.split(".")[0] for name in loaded}
     ours = {name for name in loaded if name.startswith("runningbond")}
@@ -44,19 +44,19 @@ def test_import_loads_no_library_and_no_room() -> None:
     assert not METHODS & set(loaded)
 
 
-def test_a_wall_is_built_without_models_compilers_and_pictures() -> None:
+def test_building_a_wall_loads_no_solver_or_plotting_library() -> None:
     lines = FIVE_LINES.split("result =")[0]
     loaded = python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
-    assert not (DRAWING | {"numba", "gmsh", "joblib"}) & set(loaded)
+    assert not (PLOTTING | {"numba", "gmsh", "joblib"}) & set(loaded)
 
 
-def test_a_wall_is_changed_by_full_names_without_a_look_into_the_schema() -> None:
+def test_changes_by_full_names_do_not_load_the_schema() -> None:
     lines = f"{FIVE_LINES.split('result =')[0]}\nwall = wall.with_({{'joint.friction': 0.5, 'title': 'rougher'}})"
     assert "runningbond.scene.schema" not in python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
 
 
-def test_a_key_is_refused_without_a_look_into_drawings() -> None:
-    """The schema, by which a key is told to be misspelt, knows of a drawing that does not exist."""
+def test_check_for_misspelt_keys_does_not_load_ezdxf() -> None:
+    """Misspelt keys are found with the schema, whose example scenes include a drawing that does not exist."""
     lines = (
         "from runningbond.scene.schema import misspelt\nimport sys\nprint(misspelt({'wall': {'heigth': 0.6}}).remedy)"
     )
@@ -65,42 +65,42 @@ def test_a_key_is_refused_without_a_look_into_drawings() -> None:
     assert "ezdxf" not in said.split()
 
 
-def test_every_name_is_listed_and_there() -> None:
+def test_every_listed_name_exists() -> None:
     assert set(rb.__all__) <= set(dir(rb))
     assert all(hasattr(rb, name) for name in rb.__all__)
 
 
-def test_a_name_that_is_not_there_is_refused() -> None:
+def test_unknown_name_is_refused() -> None:
     with pytest.raises(AttributeError, match="Wal"):
         getattr(rb, "Wal")  # noqa: B009 - mypy sees that it is not there
 
 
 @pytest.fixture
-def strangers(tmp_path: Path) -> Path:
-    """A folder of files of a user's own, named like rooms, which nothing of the package may import."""
+def user_files(tmp_path: Path) -> Path:
+    """Folder with user files named like subpackages, which the package must not import."""
     rooms = ("scene", "results", "joints", "compare", "dynamics", "limit", "pictures", "studies", "commands")
     for name in (*rooms, "wall", "sweeps", "tables", "dem_test"):
         (tmp_path / f"{name}.py").write_text(f"raise ImportError('{name}.py of the user was imported')\n")
     return tmp_path
 
 
-def test_five_lines_run_beside_files_named_like_rooms(strangers: Path) -> None:
-    (strangers / "script.py").write_text(FIVE_LINES)
-    assert [line.split()[0] for line in python("script.py", cwd=strangers).splitlines()] == ["collapse", "collapse"]
+def test_five_lines_run_beside_files_named_like_subpackages(user_files: Path) -> None:
+    (user_files / "script.py").write_text(FIVE_LINES)
+    assert [line.split()[0] for line in python("script.py", cwd=user_files).splitlines()] == ["collapse", "collapse"]
 
 
-def test_commands_run_beside_files_named_like_rooms(strangers: Path) -> None:
-    answer = python("-m", "runningbond", "run", "panel-01", "--model", "limit", "--json", cwd=strangers)
+def test_commands_run_beside_files_named_like_subpackages(user_files: Path) -> None:
+    answer = python("-m", "runningbond", "run", "panel-01", "--model", "limit", "--json", cwd=user_files)
     assert '"status": "collapse"' in answer
-    (strangers / "wall.toml").write_text(_block("toml"))
+    (user_files / "wall.toml").write_text(_block("toml"))
     lines = "\n".join(f"assert command({line.split()!r}) == 0" for line in _commands())
-    python("-c", f"from runningbond.commands.command_line import command\n{lines}", cwd=strangers)
+    python("-c", f"from runningbond.commands.command_line import command\n{lines}", cwd=user_files)
 
 
-def test_lines_of_the_readme_run_beside_files_named_like_rooms(strangers: Path) -> None:
-    (strangers / "wall.toml").write_text(_block("toml"))
-    (strangers / "script.py").write_text("import matplotlib\nmatplotlib.use('Agg')\n" + _block("python"))
-    assert python("script.py", cwd=strangers).startswith("collapse")
+def test_readme_runs_beside_files_named_like_subpackages(user_files: Path) -> None:
+    (user_files / "wall.toml").write_text(_block("toml"))
+    (user_files / "script.py").write_text("import matplotlib\nmatplotlib.use('Agg')\n" + _block("python"))
+    assert python("script.py", cwd=user_files).startswith("collapse")
 
 
 EVERY_MODEL = (
@@ -118,16 +118,16 @@ for model in ("limit", "homog", "dem-static", "fem"):
 
 
 @pytest.mark.parametrize("name", sorted(METHODS))
-def test_results_may_lie_in_a_folder_named_like_a_method(tmp_path: Path, name: str) -> None:
-    """Which an editable installation would take for an empty package; it finds packages after all that is beside."""
+def test_folder_named_like_a_method_is_not_imported(tmp_path: Path, name: str) -> None:
+    """An editable installation finds the suite last, and would take such a results folder for an empty package."""
     (tmp_path / name).mkdir()
-    (tmp_path / "script.py").write_text(_found_last(EVERY_MODEL))
+    (tmp_path / "script.py").write_text(_with_editable_finder(EVERY_MODEL))
     answer = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True)
     assert answer.stdout.split() == ["collapse"] * 4, answer.stderr
 
 
-def _found_last(lines: str) -> str:
-    """Lines that find the suite as `pip install -e` lets them: by a finder that is asked after the usual ones."""
+def _with_editable_finder(lines: str) -> str:
+    """Script that imports the suite as after `pip install -e`: by a finder that comes after the usual ones."""
     finder = """
 import sys
 from importlib.machinery import PathFinder
@@ -145,17 +145,17 @@ sys.meta_path[:] = [each for each in sys.meta_path if "editable" not in str(each
     ("name", "models"),
     [("dem", {"dem-static", "fem"}), ("fem_interface", {"fem"}), ("homog", {"homog"}), ("meshing", {"fem"})],
 )
-def test_a_script_named_like_a_method_is_told_so_by_the_models_that_need_it(
+def test_script_named_like_a_method_is_refused_by_models_that_need_it(
     tmp_path: Path, name: str, models: set[str]
 ) -> None:
-    """It would be imported, and with that run, a second time."""
+    """It would be imported in place of the method, and thereby run a second time."""
     (tmp_path / f"{name}.py").write_text(EVERY_MODEL)
     said = python(f"{name}.py", cwd=tmp_path).splitlines()
     told = f"{tmp_path / name}.py would be imported in place of the suite's package {name}: let it have another name"
     assert said == [told if model in models else "collapse" for model in ("limit", "homog", "dem-static", "fem")]
 
 
-def test_commands_take_no_file_of_a_users_for_a_method(tmp_path: Path) -> None:
+def test_commands_ignore_user_files_named_like_methods(tmp_path: Path) -> None:
     for name in METHODS:
         (tmp_path / f"{name}.py").write_text(f"raise ImportError('{name}.py of the user was imported')\n")
     for line in ("run panel-01 --model dem-static", "run panel-01 --model homog", "mesh panel-01 --out wall.vtu"):
@@ -167,19 +167,19 @@ def _block(language: str) -> str:
 
 
 def _commands() -> list[str]:
-    """Commands of the README that need no screen and take no minute."""
+    """Commands of the README that need no display and are fast."""
     start = ".venv/bin/runningbond "
     readme = (ROOT / "README.md").read_text().splitlines()
     lines = [line.removeprefix(start) for line in readme if line.startswith(start)]
     return [line for line in lines if line.split()[0] in ("advise", "mesh") or line.endswith("--model limit")]
 
 
-def test_the_top_level_of_the_distribution_is_the_package_and_the_four_methods() -> None:
+def test_distribution_contains_runningbond_and_the_four_methods() -> None:
     with (ROOT / "pyproject.toml").open("rb") as file:
         packages = find_packages(str(ROOT), **tomllib.load(file)["tool"]["setuptools"]["packages"]["find"])
     assert {package.split(".")[0] for package in packages} == {"runningbond", *METHODS}
 
 
-def test_the_version_is_that_of_the_distribution() -> None:
+def test_version_equals_that_of_the_distribution() -> None:
     stated = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert rb.__version__ == stated

@@ -1,4 +1,4 @@
-"""Every library that the package or its tests import is asked for with a lowest version, which is what was tried."""
+"""tools/oldest_versions.py lists a lowest version for every dependency of the package, for tests with these."""
 
 import subprocess
 import sys

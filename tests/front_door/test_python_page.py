@@ -1,4 +1,4 @@
-"""What docs/python.md says can be done, done as it says."""
+"""The code, links and keywords of docs/python.md."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "python.md").read_text()
 
 
-def test_snippets_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_snippets_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(matplotlib, "rcParams", matplotlib.rcParams.copy())
     matplotlib.use("Agg")
@@ -28,12 +28,12 @@ def test_snippets_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.Mo
     assert list((tmp_path / "sweep").iterdir())
 
 
-def test_links_lead_somewhere() -> None:
+def test_linked_files_exist() -> None:
     for target in re.findall(r"\]\((?!https:)([^)#]+)", PAGE):
         assert (ROOT / "docs" / target).exists(), target
 
 
-def test_every_keyword_of_a_material_is_a_key_of_the_scene_file() -> None:
+def test_material_keywords_are_documented_keys_of_scene_files() -> None:
     from runningbond.wall import TABLES
 
     keys = (ROOT / "docs" / "scene-file.md").read_text()

@@ -1,4 +1,4 @@
-"""Results: tables that add up, pictures, and the states along the path."""
+"""Results: tables in equilibrium, pictures, and the states along the path."""
 
 import math
 import sys
@@ -27,7 +27,7 @@ def tables(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
         monkeypatch.setitem(sys.modules, "pandas", None)
 
 
-def test_scalars_are_the_outcomes() -> None:
+def test_scalars_are_those_of_the_outcome() -> None:
     result = WALL.run("limit")
     for name, value in result.outcome.summary().items():
         if name != "scene":
@@ -40,8 +40,8 @@ def test_scalars_are_the_outcomes() -> None:
 @pytest.mark.parametrize(
     ("model", "rest"), [("limit", 1e-9), ("dem-static", 1e-6), ("dem-dynamic", 1e-4), ("fem", 1e-4)]
 )
-def test_every_block_rests_under_the_forces_of_its_joints(model: str, rest: float) -> None:
-    """Forces and moments, in weights of the heaviest; of soft blocks as well, whose meshes have other points."""
+def test_joint_forces_balance_the_loads_on_every_block(model: str, rest: float) -> None:
+    """Forces and moments, relative to the heaviest block's weight; also for fem, whose meshes have other points."""
     result = WALL.run(model)
     scene, table = result.wall.scene, result.joints
     at = np.column_stack([table["x"], table["y"]])
@@ -58,7 +58,7 @@ def test_every_block_rests_under_the_forces_of_its_joints(model: str, rest: floa
     assert np.abs(left[~scene.fixed]).max() < rest * scene.mass[~scene.fixed].max() * 9.81
 
 
-def test_forces_on_the_ground_bear_weight_and_push() -> None:
+def test_forces_on_the_ground_balance_weight_and_live_load() -> None:
     """Vertical forces of the joints with the ground add up to the weight, shear forces to λ times it."""
     result = WALL.run("limit")
     ground, weight = len(WALL.scene.blocks) - 1, 9.81 * WALL.scene.mass[WALL.scene.wall].sum()
@@ -69,8 +69,8 @@ def test_forces_on_the_ground_bear_weight_and_push() -> None:
     assert abs(joints["shear_force"][at_ground].sum()) == pytest.approx(result.multiplier * weight, rel=1e-6)
 
 
-def test_a_low_block_slides_by_one_metre_and_dilates_by_its_friction() -> None:
-    """Exact, associated: u = cos φ, v = sin φ of a block that moves by 1 m, and opening = tan φ · slip at its base."""
+def test_sliding_block_dilates_by_its_friction_angle() -> None:
+    """Exact for associated flow: a block that moves by 1 m has u = cos φ, v = sin φ and opening = tan φ · slip."""
     block = rb.Wall.courses([[2]], block_width=0.4, block_height=0.2, thickness=0.2, **MATERIAL)
     result = block.run("limit")
     phi = math.atan(0.4)
@@ -80,13 +80,13 @@ def test_a_low_block_slides_by_one_metre_and_dilates_by_its_friction() -> None:
     assert np.asarray(result.joints["opening"]) == pytest.approx(0.4 * abs(np.asarray(result.joints["slip"])))
 
 
-def test_curve_is_the_outcomes() -> None:
+def test_curve_is_that_of_the_outcome() -> None:
     result = WALL.run("dem-static")
     assert np.array_equal(result.curve["displacement"], result.outcome.curve[:, 0])
     assert np.array_equal(result.curve["multiplier"], result.outcome.curve[:, 1])
 
 
-def test_what_a_model_does_not_say_is_not_a_number() -> None:
+def test_missing_results_are_nan() -> None:
     empty = Result(WALL, Outcome("small", "mine", "undecided"))
     assert len(empty.curve) == 0
     for column in ("u", "v", "rotation"):
@@ -96,23 +96,25 @@ def test_what_a_model_does_not_say_is_not_a_number() -> None:
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
-def test_states_end_in_the_bracket_and_begin_at_rest_under_the_weight(model: str) -> None:
-    """Each state at rest is in equilibrium at the ground; the largest multiplier at rest is `lower`."""
+def test_states_at_rest_are_in_equilibrium_and_include_the_lower_bound(model: str) -> None:
+    """The first state has λ = 0, one has λ = `lower`; states at rest up to `lower` are in equilibrium at the ground."""
     result = WALL.run(model, states=True)
     states, scene = result.states, WALL.scene
     assert states[0].multiplier == 0.0
     assert {result.lower} <= {state.multiplier for state in states}
     weight = 9.81 * scene.mass[scene.wall].sum()
-    for state in states:
-        if state.multiplier <= (result.lower or 0.0) and not np.abs(state.velocity).max() > 1e-6:
-            ground = state.points.block[:, 1] == len(scene.blocks) - 1
-            assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
-            assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
+    assert result.lower is not None
+    resting = [x for x in states if x.multiplier <= result.lower and not np.abs(x.velocity).max() > 1e-6]
+    assert result.lower in {state.multiplier for state in resting}
+    for state in resting:
+        ground = state.points.block[:, 1] == len(scene.blocks) - 1
+        assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
+        assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
     assert (np.diff(states[0].points.joint) >= 0).all()
 
 
-def test_states_of_a_finer_mesh_are_on_its_points() -> None:
-    """The run's own points, and forces on them that bear the weight; at `lower` the push as well."""
+def test_states_of_a_finer_mesh_use_its_contact_points() -> None:
+    """The run's own contact points, with forces that balance the weight, and at `lower` also the live load."""
     result = WALL.run("fem", states=True, tolerance=0.1, cells=2, modes=6)
     points = modal_wall(WALL.scene, 2, 6).elements.points
     weight = 9.81 * WALL.scene.mass[WALL.scene.wall].sum()
@@ -128,33 +130,33 @@ def test_states_of_a_finer_mesh_are_on_its_points() -> None:
         assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
 
 
-def test_forces_of_the_last_rest_stand_in_the_order_of_the_joints() -> None:
+def test_forces_at_the_lower_bound_are_in_the_order_of_the_joints() -> None:
     result = WALL.run("dem-dynamic", states=True)
     last = next(state for state in result.states if state.multiplier == result.lower)
     assert last.force[:, 0] == pytest.approx(np.asarray(result.joints["normal_force"]), rel=1e-6, abs=1e-6)
     assert last.points.position[:, 0] == pytest.approx(np.asarray(result.joints["x"]))
 
 
-def test_states_are_only_there_when_they_were_asked_for() -> None:
+def test_states_need_the_option_states() -> None:
     with pytest.raises(ValueError, match=r"states=True"):
         WALL.run("limit").states  # noqa: B018 - refused where it is read
     assert WALL.run("limit", states=True).states == []
 
 
-def test_a_result_says_what_it_is_in_a_line() -> None:
+def test_repr_of_a_result() -> None:
     result = WALL.run("limit")
     assert repr(result) == "<Result of limit on 'small': collapse: λ 0.4000, lower 0.4000, upper 0.4000>"
     stuck = Result(WALL, Outcome("small", "mine", "undecided", upper=1.0))
     assert repr(stuck) == "<Result of mine on 'small': undecided: upper 1.0000>"
 
 
-def test_a_notebook_is_shown_a_picture() -> None:
+def test_result_has_pictures_for_notebooks() -> None:
     result = WALL.run("limit")
     assert "<svg" in result._repr_svg_()
     assert result._repr_png_().startswith(b"\x89PNG")
 
 
-def test_mechanism_and_curve_are_drawn_into_axes() -> None:
+def test_mechanism_and_curve_are_plotted_into_given_axes() -> None:
     from matplotlib.figure import Figure
 
     result = WALL.run("dem-static")
@@ -169,27 +171,27 @@ def test_mechanism_and_curve_are_drawn_into_axes() -> None:
     assert np.array_equal(drawn, 1e3 * result.outcome.curve[: len(drawn), 0])
     assert len(drawn) > 2
     alone = result.plot()
-    assert alone.get_position().y0 > 0.1  # with room for its words below
+    assert alone.get_position().y0 > 0.1  # with space for the caption below
     with pytest.raises(rb.SceneError, match="what = 'curves': must be mechanism or curve"):
         result.plot("curves")  # type: ignore[arg-type]
 
 
-def test_a_tolerance_that_is_no_number_is_refused() -> None:
+def test_tolerance_that_is_no_number_is_refused() -> None:
     with pytest.raises(rb.SceneError, match="tolerance = 'a': must be a number above 0 and below 1"):
         rb.read("wall-w1").run("limit", tolerance="a")  # type: ignore[arg-type]
 
 
-def test_an_unknown_model_is_refused_with_what_there_is() -> None:
+def test_unknown_model_is_refused_with_a_suggestion() -> None:
     with pytest.raises(rb.SceneError, match='did you mean "limit"?'):
         WALL.run("limt")
 
 
-def test_a_model_that_does_not_apply_says_why() -> None:
+def test_model_that_does_not_apply_gives_the_reason() -> None:
     with pytest.raises(rb.SceneError, match="mortar"):
         WALL.with_({"joint.mortar": None}).run("dem-static")
 
 
-def test_draws_and_responses_are_told_in_a_line() -> None:
+def test_repr_of_draws_and_fragility() -> None:
     ends = (3.0, 1.0, None, 5.0, 2.0, 4.0)
     each = [Outcome("small", "mine", "collapse" if x else "undecided", multiplier=x) for x in ends]
     told = "<Draws of mine on 'small', bits: 5 of 6 collapse, lowest 1.0000, mean 3.0000 ± 0.7071>"
@@ -200,7 +202,7 @@ def test_draws_and_responses_are_told_in_a_line() -> None:
     assert repr(found) == f"<Fragility: median 0.25 g, dispersion 0.4; {records}>"
 
 
-def test_responses_are_told_in_a_line_and_drawn() -> None:
+def test_repr_and_pictures_of_a_response() -> None:
     pulse = {"pulse": {"kind": "sine", "amplitude": 2.0, "period": 0.05}, "quantity": "acceleration"}
     block: dict[str, Any] = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2, "history": pulse}
     wall = rb.Wall.courses([[1]], **block, **MATERIAL)

@@ -1,4 +1,4 @@
-"""Walls built in Python: the same wall and the same refusals as a file's, changed by copies, written and read."""
+"""Walls built in Python: same scenes and messages as from files; changed as copies; written and read."""
 
 import re
 from pathlib import Path
@@ -13,7 +13,7 @@ from runningbond.commands.command_line import command
 from runningbond.compare.published import PUBLISHED, published_scene
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.schema import scene_schema
-from runningbond.wall import WHOLE
+from runningbond.wall import TOP_LEVEL
 from tests.scene.drafting import BRICKS, closed, dxf, tables
 
 PANEL: dict[str, Any] = {
@@ -29,27 +29,27 @@ PANEL: dict[str, Any] = {
 SOLID = {"density": 1800.0, "friction": 0.6}
 
 
-def same(one: Scene, other: Scene) -> bool:
-    """Whether models see the same wall."""
+def same_scene(one: Scene, other: Scene) -> bool:
+    """Whether two scenes are the same to the models (equal fingerprints)."""
     return fingerprint(one, "limit", 0.01) == fingerprint(other, "limit", 0.01)
 
 
 @pytest.mark.parametrize("name", [case.name for case in PUBLISHED])
-def test_published_walls_survive_being_written_and_read(name: str, tmp_path: Path) -> None:
+def test_published_walls_are_unchanged_by_writing_and_reading(name: str, tmp_path: Path) -> None:
     wall = rb.read(name)
-    assert same(wall.scene, published_scene(name))
+    assert same_scene(wall.scene, published_scene(name))
     wall.to_toml(tmp_path / "copy.toml")
-    assert same(rb.read(tmp_path / "copy.toml").scene, wall.scene)
+    assert same_scene(rb.read(tmp_path / "copy.toml").scene, wall.scene)
 
 
-def test_words_of_any_letters_survive_being_written_and_read(tmp_path: Path) -> None:
+def test_any_characters_are_unchanged_by_writing_and_reading(tmp_path: Path) -> None:
     title = 'é "quoted" \\ back, ✓ 🧱 and a \x7f that TOML wants escaped'
     wall = rb.Wall.running_bond(**PANEL, title=title)
     wall.to_toml(tmp_path / "wall.toml")
     assert rb.read(tmp_path / "wall.toml").description == wall.description
 
 
-def test_keywords_make_the_wall_that_tables_make() -> None:
+def test_keywords_and_tables_make_the_same_wall() -> None:
     mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
     by_words = rb.Wall.running_bond(**PANEL, ends="toothed", mortar=mortar, support="fixed-first-course", title="x")
     size = {key: PANEL[key] for key in ("length", "height", "block_width", "block_height", "thickness")}
@@ -63,29 +63,29 @@ def test_keywords_make_the_wall_that_tables_make() -> None:
             "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
         }
     )
-    assert same(by_words.scene, by_tables.scene)
+    assert same_scene(by_words.scene, by_tables.scene)
 
 
-def test_tuples_and_arrays_count_as_lists() -> None:
+def test_tuples_and_arrays_are_accepted_as_lists() -> None:
     size = {key: PANEL[key] for key in ("block_width", "block_height", "thickness", "density", "friction")}
     by_lists = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], **size)
     mixed: Any = ((1, 1), np.array([0.5, 1, 0.5]))
-    assert same(rb.Wall.courses(mixed, **size).scene, by_lists.scene)
+    assert same_scene(rb.Wall.courses(mixed, **size).scene, by_lists.scene)
     assert by_lists.with_({"joint.friction": np.float32(0.5)}).scene.joint.friction == 0.5
 
 
-def test_a_copy_is_changed_and_the_wall_is_not() -> None:
+def test_with_changes_a_copy_only() -> None:
     wall = rb.Wall.running_bond(**PANEL)
     by_name, by_table = wall.with_({"joint.friction": 0.7}), wall.with_(joint={"friction": 0.7})
     assert wall.scene.joint.friction == 0.6
-    assert same(by_name.scene, by_table.scene)
+    assert same_scene(by_name.scene, by_table.scene)
     assert by_name.scene.joint.friction == 0.7
     assert by_name.scene.block.density == 1800.0
     wall.description["joint"]["friction"] = 0.1
     assert wall.description["joint"]["friction"] == 0.6
 
 
-def test_names_with_dots_are_whole_in_full_names() -> None:
+def test_names_with_dots_in_full_names() -> None:
     materials = {"oak": {"density": 700.0}, "oak.1": {"density": 800.0}}
     wall = rb.Wall.running_bond(**PANEL).with_({"materials": materials, "assign": [{"block": "oak.1", "blocks": [0]}]})
     heavier = wall.with_({"materials.oak.1.density": 900.0, "materials.elm.density": 600.0})
@@ -96,23 +96,23 @@ def test_names_with_dots_are_whole_in_full_names() -> None:
         wall.with_({"joint.friction.": 0.7}).scene  # noqa: B018
 
 
-def test_none_takes_a_key_out() -> None:
+def test_none_removes_a_key() -> None:
     wall = rb.Wall.running_bond(**PANEL).with_({"joint.friction": None, "joint.friction_angle": 45.0})
     assert wall.scene.joint.friction == pytest.approx(1.0)
     assert "mortar" not in rb.Wall.running_bond(**PANEL, mortar=None).description["joint"]
     assert "title" not in rb.Wall.from_dict({**wall.description, "title": None}).description
 
 
-def test_a_table_of_another_kind_takes_the_place_of_the_old_one() -> None:
+def test_table_of_another_kind_replaces_the_old_one() -> None:
     point = rb.Wall.running_bond(**PANEL, live={"kind": "point", "at": (0.72, 0.72), "force": (0, -1)})
     back = point.with_({"load.live": {"kind": "lateral"}})
     assert back.scene.load.gravity == point.scene.load.gravity
-    assert same(back.scene, rb.Wall.running_bond(**PANEL).scene)
+    assert same_scene(back.scene, rb.Wall.running_bond(**PANEL).scene)
     assert isinstance(rb.read("panel-01").with_({"load.live": {"kind": "lateral"}}).description["load"]["live"], dict)
 
 
-def test_changes_are_the_same_in_whatever_order() -> None:
-    """A direction stays beside the kind of its load, whichever is named first."""
+def test_order_of_changes_does_not_matter() -> None:
+    """A direction is kept with the kind of its load, whichever is given first."""
     wall = rb.Wall.running_bond(**PANEL)
     kind, direction = {"load.live": {"kind": "tilt"}}, {"load.live.direction": "left"}
     turned = {"kind": "tilt", "direction": "left"}
@@ -125,10 +125,8 @@ def test_changes_are_the_same_in_whatever_order() -> None:
             beamed.with_(changes)
 
 
-def test_a_drawing_is_looked_up_where_it_was_whatever_the_current_folder_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Two folders each have a drawing of one name: a copy of the first's wall is of the first's drawing."""
+def test_drawing_is_found_independently_of_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two folders have drawings of the same name: a copy of the first wall must use the first drawing."""
     walls = []
     for name, bricks in (("one", BRICKS), ("two", BRICKS[:2])):
         (tmp_path / name).mkdir()
@@ -138,11 +136,11 @@ def test_a_drawing_is_looked_up_where_it_was_whatever_the_current_folder_is(
     copies = [wall.with_({"joint.friction": 0.5}) for wall in walls]
     assert [wall.scene.wall.sum() for wall in copies] == [7, 2]
     copies[0].to_toml("copy.toml")
-    assert same(rb.read("copy.toml").scene, copies[0].scene)
+    assert same_scene(rb.read("copy.toml").scene, copies[0].scene)
 
 
-def test_what_models_see_cannot_be_changed_in_place() -> None:
-    """The next run would be of another wall."""
+def test_arrays_of_a_scene_are_read_only() -> None:
+    """A change in place would alter the wall for the next run."""
     scene = rb.Wall.running_bond(**PANEL).scene
     seen = {"mass": scene.mass, "density": scene.density, "area": scene.blocks.area}
     for kind, forces in (("dead", scene.dead_forces), ("live", scene.live_forces)):
@@ -158,15 +156,15 @@ def test_what_models_see_cannot_be_changed_in_place() -> None:
         assert not values.flags.writeable, name
 
 
-def test_a_material_may_be_called_kind() -> None:
+def test_material_may_be_named_kind() -> None:
     materials = {"kind": {"density": 700.0}, "oak": {"density": 600.0}}
     wall = rb.Wall.running_bond(**PANEL, materials=materials)
     heavier = wall.with_({"materials.kind.density": 800.0})
     assert heavier.description["materials"] == {"kind": {"density": 800.0}, "oak": {"density": 600.0}}
 
 
-def test_entries_of_lists_are_changed_by_their_numbers_as_refusals_name_them() -> None:
-    """Of ties, loads, vectors and courses; what stands beside them stays."""
+def test_entries_of_lists_are_changed_by_their_numbers() -> None:
+    """As messages name them, for ties, loads, vectors and courses; the other entries stay."""
     tie = {"from": [0.12, 0.03], "to": [1.32, 0.03], "area": 1e-4, "young": 2.1e11, "yield": 1e3, "preload": 500.0}
     floor = {"kind": "line", "from": [0.0, 0.72], "to": [1.44, 0.72], "force": [0.0, -1e3]}
     live = [{"kind": "lateral"}, {"kind": "point", "at": [0.0, 0.69], "force": [1e3, 0.0]}]
@@ -187,8 +185,8 @@ def test_entries_of_lists_are_changed_by_their_numbers_as_refusals_name_them() -
     ]
 
 
-def test_a_sweep_over_the_yield_force_of_a_tie() -> None:
-    """A block leant on by 1 N and held at its top by a tie: λ is what the tie and its weight bear."""
+def test_sweep_over_the_yield_force_of_a_tie() -> None:
+    """A block pushed by 1 N at its top, with a tie at mid-height: λ balances the moments of weight and tie."""
     block = rb.Wall.courses([[1]], block_width=0.4, block_height=1.0, thickness=1.0, density=1000.0, friction=5.0)
     tie = {"from": [-1.0, 0.5], "to": [0.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 1.0}
     push = {"kind": "point", "at": [0.0, 1.0], "force": [1.0, 0.0]}
@@ -211,14 +209,14 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("keys", "said"), REFUSED, ids=[next(iter(keys)) for keys, _ in REFUSED])
-def test_what_a_file_may_not_say_python_may_not_say(keys: dict[str, Any], said: str) -> None:
+def test_python_refuses_what_a_file_may_not_contain(keys: dict[str, Any], said: str) -> None:
     with pytest.raises(rb.SceneError, match=re.escape(said)) as refusal:
         rb.Wall.running_bond(**{**PANEL, **keys})
     assert "\n" not in str(refusal.value)
 
 
-def test_advice_is_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
-    """But for the seconds, which are those of another climb."""
+def test_repr_of_advice_equals_the_output_of_the_command(capsys: pytest.CaptureFixture[str]) -> None:
+    """Except for the times, because the two run separately."""
     advice = rb.read("wall-w3").advise(0.3)
     assert command(["advise", "wall-w3", "--tolerance", "0.3"]) == 0
     printed, said = (
@@ -232,13 +230,13 @@ def test_advice_is_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -
     assert [rung.model for rung in advice.rungs][:2] == ["homog", "limit"]
 
 
-def test_advice_warns_of_what_looks_like_a_slip() -> None:
+def test_advice_warns_of_likely_input_errors() -> None:
     wall = rb.Wall.running_bond(**PANEL).with_({"joint.friction": 30.0, "joint.cohesion": 0.0})
     with pytest.warns(UserWarning, match="friction_angle = 30 meant"):
         wall.advise(0.9)
 
 
-def test_openings_are_given_as_a_file_has_them() -> None:
+def test_openings_are_given_as_in_a_file() -> None:
     size = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2, "density": 1800.0, "friction": 0.6}
     window = {"from": [0.8, 0.4], "to": [1.2, 0.8], "lintel": {"height": 0.2, "bearing": 0.2}}
     wall = rb.Wall.running_bond(length=2.0, height=1.2, opening=[window], **size)
@@ -247,8 +245,8 @@ def test_openings_are_given_as_a_file_has_them() -> None:
     assert solid - blocks == pytest.approx(0.4 * 0.4)
 
 
-def test_courses_of_different_heights_are_given_in_place_of_a_height() -> None:
-    """As `wall.course_heights` of a file."""
+def test_course_heights_replace_the_block_height() -> None:
+    """As `wall.course_heights` in a file."""
     size = {"block_width": 0.4, "thickness": 0.2, "density": 1800.0, "friction": 0.6}
     heights = [0.2, 0.1, 0.3]
     wall = rb.Wall.running_bond(length=1.6, course_heights=heights, **size)
@@ -260,8 +258,8 @@ def test_courses_of_different_heights_are_given_in_place_of_a_height() -> None:
         rb.Wall.running_bond(length=1.6, course_heights=heights, block_height=0.2, **size)
 
 
-def test_what_looks_like_a_slip_is_a_warning_where_the_wall_is_run() -> None:
-    """With the words that the command line has for a file."""
+def test_likely_input_errors_are_warned_about_at_the_calling_line() -> None:
+    """With the same text as on the command line, and with the caller's file."""
     wall = rb.Wall.running_bond(**PANEL).with_({"block.density": 1.8})
     with pytest.warns(UserWarning, match=r"block.density = 1.8: is not within .* kg/m³") as told:
         wall.run("limit")
@@ -286,7 +284,7 @@ def test_every_change_is_checked(changes: dict[str, Any], said: str) -> None:
                 wall.with_(changes)
 
 
-def test_a_wall_that_is_no_plain_data_is_not_written(tmp_path: Path) -> None:
+def test_wall_with_python_objects_is_not_written(tmp_path: Path) -> None:
     wall = rb.Wall.running_bond(**PANEL)
     wall._description["joint"]["law"] = object()
     with pytest.raises(rb.SceneError, match=re.escape("joint.law")):
@@ -295,33 +293,33 @@ def test_a_wall_that_is_no_plain_data_is_not_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "meant"), [("panel-1", "panel-01"), ("panel-7", "panel-07"), ("wall-W3", "wall-w3")])
-def test_the_nearest_published_wall_is_meant(name: str, meant: str) -> None:
-    """Of panel-01, panel-10, panel-11 and panel-12, which are as near to panel-1, it was the last."""
+def test_suggestion_is_the_nearest_published_wall(name: str, meant: str) -> None:
+    """panel-01, panel-10, panel-11 and panel-12 are equally near to panel-1; the last was once suggested."""
     with pytest.raises(SceneError, match=f'did you mean "{meant}"'):
         rb.read(name)
 
 
-def test_tables_of_a_scene_are_a_dictionary() -> None:
+def test_scene_from_dict_needs_a_dictionary() -> None:
     with pytest.raises(SceneError, match="content = 3: must be a dictionary of the tables of a scene file"):
         scene_from_dict(3)  # type: ignore[arg-type]
 
 
-def test_a_file_that_is_not_there_is_refused() -> None:
+def test_missing_file_is_refused() -> None:
     with pytest.raises(rb.SceneError, match="no such file, nor a published scene"):
         rb.read("panel-99")
 
 
-def test_a_wall_says_what_it_is_in_a_line() -> None:
+def test_repr_of_a_wall() -> None:
     assert repr(rb.Wall.running_bond(**PANEL, title="panel")) == "<Wall 'panel': 78 blocks, 1.44 × 0.72 m>"
 
 
-def test_a_notebook_is_shown_a_picture() -> None:
+def test_wall_has_pictures_for_notebooks() -> None:
     wall = rb.Wall.running_bond(**PANEL)
     assert "<svg" in wall._repr_svg_()
     assert wall._repr_png_().startswith(b"\x89PNG")
 
 
-def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
+def test_wall_is_plotted_into_given_axes() -> None:
     from matplotlib.figure import Figure
 
     axes = Figure().add_subplot()
@@ -390,36 +388,36 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
         (lambda _: rb.read(3), "wall = 3: must be a path"),  # type: ignore[arg-type]
     ],
 )
-def test_arguments_of_another_kind_are_refused_by_name(ask: Any, said: str) -> None:
+def test_invalid_arguments_are_refused_by_name(ask: Any, said: str) -> None:
     with pytest.raises(rb.SceneError, match=re.escape(said)):
         ask(rb.read("wall-w1"))
 
 
-def test_numbers_of_numpy_are_whole_numbers_too() -> None:
+def test_numpy_integers_are_accepted() -> None:
     number: Any = np.int64(2)
     draws = rb.read("wall-w1").draws("dem-static", number, jobs=1, tolerance=0.05)
     assert len(draws.outcomes) == 2
 
 
-def test_a_key_without_its_table_is_told_its_full_name() -> None:
+def test_message_for_a_key_without_table_gives_the_full_name() -> None:
     with pytest.raises(SceneError, match=r'friction = 0.3: is a key of \[joint\]; give it as {"joint.friction": 0.3}'):
         rb.read("wall-w1").with_(friction=0.3)
 
 
 @pytest.mark.parametrize("value", [float("inf"), float("nan"), -float("inf")])
-def test_what_is_not_finite_is_said_to_be(value: float) -> None:
+def test_non_finite_numbers_are_refused(value: float) -> None:
     with pytest.raises(SceneError, match=r"joint\.friction = .*: must be a number at least 0, finite"):
         rb.read("wall-w1").with_({"joint.friction": value})
 
 
-def test_a_curve_that_is_not_there_is_not_drawn() -> None:
+def test_plot_of_a_missing_curve_is_refused() -> None:
     result = rb.read("wall-w1").run("limit")
     with pytest.raises(SceneError, match="what = 'curve': must be mechanism: limit has no curve here"):
         result.plot("curve")
 
 
-def test_a_live_load_that_is_given_stays_whichever_way_it_is_given() -> None:
-    """Beside a beam's drive or in place of the default; a default one gives way to what moves the wall."""
+def test_explicit_live_load_is_kept_and_the_default_is_not() -> None:
+    """A live load given in either way stays beside a beam's drive; the default is dropped for a drive or history."""
     beam = {"height": 0.2, "mass": 50.0, "drive": {"force": [1, 0]}}
     live = {"kind": "lateral", "direction": "left"}
     one, other = (
@@ -440,5 +438,5 @@ def test_a_live_load_that_is_given_stays_whichever_way_it_is_given() -> None:
         rb.Wall.running_bond(**{**PANEL, "frictoin": np.float32(0.4)})
 
 
-def test_what_a_scene_file_has_at_its_top_is_known() -> None:
-    assert set(WHOLE) == set(scene_schema()["properties"])
+def test_top_level_keys_agree_with_the_schema() -> None:
+    assert set(TOP_LEVEL) == set(scene_schema()["properties"])

@@ -1,4 +1,4 @@
-"""Closed forms of running bond as a continuum."""
+"""Closed forms for running bond as a homogenised continuum."""
 
 import math
 from collections.abc import Callable
@@ -21,8 +21,8 @@ TEXTURES = {(0.24, 0.06): 4, (0.12, 0.06): 2, (0.06, 0.06): 1, (0.06, 0.24): 0.2
 
 
 @given(slope=st.floats(0.05, 20))
-def test_the_two_branches_meet_in_value_and_slope(slope: float) -> None:
-    """At r = s both give 1 / (2 s) with no slope; the printed exponent −1/2 makes them jump."""
+def test_both_branches_of_the_multiplier_agree_at_their_boundary(slope: float) -> None:
+    """At r = s both are 1 / (2 s) with zero slope; with the exponent −1/2 as printed they would differ."""
     sliding = 1e9
     step = 1e-4
     at = lateral_multiplier(slope, slope, sliding)
@@ -33,8 +33,8 @@ def test_the_two_branches_meet_in_value_and_slope(slope: float) -> None:
 
 @given(slenderness=st.floats(0.01, 10), slope=st.floats(0.05, 20))
 @settings(max_examples=40)
-def test_multiplier_is_the_worst_crack_of_its_family(slenderness: float, slope: float) -> None:
-    """Turning the wedge above a straight crack of slope z ≤ s: λ = (moment of weight) / (moment of push).
+def test_multiplier_is_the_minimum_over_crack_slopes(slenderness: float, slope: float) -> None:
+    """The wedge above a straight crack of slope z ≤ s overturns: λ = (moment of weight) / (moment of lateral load).
 
     Independent of the closed form: the wedge is integrated as a polygon and z minimised on a grid.
     """
@@ -71,7 +71,9 @@ def test_multiplier_never_exceeds_sliding_and_vanishes_without_friction() -> Non
         (2.0, (0.372, 0.328, 0.267, 0.134)),
     ],
 )
-def test_the_papers_column_is_the_corrected_formula_with_tan_30(slenderness: float, printed: tuple[float, ...]) -> None:
+def test_corrected_formula_gives_the_published_values_for_tan_30(
+    slenderness: float, printed: tuple[float, ...]
+) -> None:
     friction = math.tan(math.radians(30))
     for (width, height), value in zip(TEXTURES, printed, strict=True):
         slope = crack_slope(width, height, friction)
@@ -117,16 +119,16 @@ def test_strength_domain_grows_with_cohesion_and_shrinks_with_a_cut_off() -> Non
 
 
 @pytest.mark.parametrize("unit", [1e-90, 1e-12, 1e12, 1e90])
-def test_strength_in_a_direction_does_not_depend_on_the_unit_of_the_direction(unit: float) -> None:
-    """Stresses in Pa, MPa or any other unit: the same stress is on the boundary. It was inf, or negative."""
+def test_strength_does_not_depend_on_the_unit_of_the_direction(unit: float) -> None:
+    """Stresses in Pa, MPa or any other unit: the boundary stress is the same. It was once inf or negative."""
     domain = StrengthDomain(Bond(0.24, 0.06), JointMaterial(0.6, 1.0, 1 / 0.6))
     assert unit * domain.strength((unit, -unit, unit)) == pytest.approx(1.527778, abs=1e-6)
 
 
-def test_joints_that_crush_bound_the_strength_domain() -> None:
-    """Pressed across beds all at f_m; along them heads at f_m and beds, with their cohesion, on half a block each.
+def test_crushing_joints_bound_the_strength_domain() -> None:
+    """Compression across the beds: f_m. Along them: f_m of the heads plus the cohesion of beds over half a block each.
 
-    Sheared as well, where cohesion holds heads, beds are on the cap: t² (1 + C_ss k²) = f_m². No strength was infinite.
+    With shear, if cohesion holds the heads, the beds are on the cap: t² (1 + C_ss k²) = f_m². All strengths are finite.
     """
     bond = Bond(0.24, 0.06)
     domain = StrengthDomain(bond, JointMaterial(0.6, 1.0, compressive_strength=10.0))
@@ -148,10 +150,10 @@ def test_joints_that_crush_bound_the_strength_domain() -> None:
     crushing=st.floats(0.2, 50.0),
     direction=st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda each: max(map(abs, each)) > 0.1),
 )
-def test_strength_with_caps_lies_between_that_of_polygons_in_and_about_them(
+def test_strength_with_caps_is_bracketed_by_polygons(
     shape: float, friction: float, cohesion: float, crushing: float, direction: tuple[float, float, float]
 ) -> None:
-    """The largest power-conjugate tractions, with a polygon of 200 sides in place of the ellipse, from outside."""
+    """A linear program over joint tractions, with a circumscribed polygon of 200 sides in place of the ellipse."""
     found = StrengthDomain(Bond(shape, 1.0), JointMaterial(friction, cohesion, compressive_strength=crushing))
     # Σ11 = σ_v + b/4a (τ1 − τ2), Σ22 = (σ1 + σ2) / 2, Σ12 = (τ1 + τ2) / 2 = τ_v + b/4a (σ1 − σ2)
     q = shape / 4
@@ -180,7 +182,7 @@ def test_strength_with_caps_lies_between_that_of_polygons_in_and_about_them(
         assert largest * math.cos(np.pi / 400) - 1e-6 <= found.strength(direction) <= largest * (1 + 1e-6) + 1e-6
 
 
-def test_a_direction_is_three_numbers() -> None:
+def test_direction_must_be_three_numbers() -> None:
     domain = StrengthDomain(Bond(0.24, 0.06), JointMaterial(0.6, 1.0))
     for direction in ((1, 0), (1, 0, 0, 0), 3.0):
         with pytest.raises(SceneError, match="^direction = .*: must be three numbers"):
@@ -193,8 +195,8 @@ STIFF: dict[str, Any] = {"joint__normal_stiffness": 80e9, "joint__shear_stiffnes
 SOFT: dict[str, Any] = {"friction": 0.6, "normal_stiffness": 50e9, "shear_stiffness": 20e9}
 
 
-def test_moduli_of_a_wall_have_the_stiffness_of_its_beds_and_of_its_heads() -> None:
-    """Head joints of a mortar of their own; what the wall stands on has no part. Heads were taken to be as beds are."""
+def test_moduli_use_the_stiffness_of_bed_and_head_joints() -> None:
+    """Head joints may have their own mortar; the base joint has no effect. Heads once got the stiffness of beds."""
     heads = {"joint": "soft", "between": ["*", "*"], "orientation": "head"}
     base = {"joint": "soft", "between": ["*", "ground"]}
     expected = elastic_moduli(0.24, 0.06, bed_normal=80e9, bed_shear=30e9, head_normal=50e9, head_shear=20e9)
@@ -205,12 +207,12 @@ def test_moduli_of_a_wall_have_the_stiffness_of_its_beds_and_of_its_heads() -> N
 @pytest.mark.parametrize(
     "changes", [{"wall__ends": "toothed"}, {"joint__inset": 0.005}, {"wall__first_course": "half"}]
 )
-def test_moduli_are_those_of_the_bond_whatever_its_ends(changes: dict[str, Any]) -> None:
+def test_moduli_do_not_depend_on_ends_inset_or_first_course(changes: dict[str, Any]) -> None:
     assert rigid_moduli(panel(**STIFF, **changes)) == rigid_moduli(panel(**STIFF))
 
 
-def test_walls_that_have_no_moduli_in_closed_form_are_refused() -> None:
-    """Stack bond had those of running bond, blocks that crack those of whole ones; no bond was an AssertionError."""
+def test_walls_without_closed_form_moduli_are_refused() -> None:
+    """Stack bond once got running bond's moduli, cracking blocks those of whole ones; no bond raised AssertionError."""
     no_bond = panel(**STIFF, wall__block_height=None, wall__height=None, wall__course_heights=[0.1, 0.06, 0.1])
     other: list[list[list[float]]] = [[[1, 1], [1, 1]], [[2, 2], [1, 2, 1]], [[1, 1]]]
     for scene in (no_bond, *(courses(each, **STIFF) for each in other)):
@@ -223,8 +225,8 @@ def test_walls_that_have_no_moduli_in_closed_form_are_refused() -> None:
         rigid_moduli(panel(**STIFF, joints={"soft": SOFT}, assign=[half]))
 
 
-def test_moduli_of_blocks_that_differ_in_thickness_are_refused() -> None:
-    """Courses that are as thick by turns bear on beds of the thinner ones: A2222 was twice that of a periodic cell."""
+def test_moduli_of_blocks_of_different_thickness_are_refused() -> None:
+    """Courses of alternating thickness have beds as thick as the thinner one: A2222 was twice the periodic cell's."""
     thin = {"density": 1800.0, "thickness": 0.04}
     rows = [{"block": "thin", "box": [[0.0, 0.12 * k], [1.44, 0.12 * k + 0.06]]} for k in range(6)]
     scene = panel(**STIFF, wall__thickness=0.12, materials={"thin": thin}, assign=rows)
@@ -236,7 +238,7 @@ def test_moduli_of_blocks_that_differ_in_thickness_are_refused() -> None:
     assert rigid_moduli(own) == rigid_moduli(panel(**STIFF))
 
 
-def test_moduli_of_open_joints_are_none() -> None:
+def test_moduli_of_joints_without_stiffness_are_zero() -> None:
     closed = elastic_moduli(0.24, 0.06, bed_normal=1.0, bed_shear=1.0, head_normal=0.0, head_shear=0.0)
     assert closed.a1111 == pytest.approx(0.24**2 / (4 * 0.06))
     assert elastic_moduli(0.24, 0.06, bed_normal=0, bed_shear=0, head_normal=0, head_shear=0) == Moduli(0.0, 0.0, 0.0)
@@ -253,28 +255,28 @@ def test_moduli_of_open_joints_are_none() -> None:
         (lambda: elastic_moduli(1, 1, bed_normal=1, bed_shear=-1, head_normal=1, head_shear=1), "bed_shear"),
     ],
 )
-def test_numbers_that_mean_nothing_are_refused_by_name(call: Callable[[], object], key: str) -> None:
-    """A modulus or a multiplier came out, of negative ones as well."""
+def test_invalid_arguments_of_the_formulas_are_refused_by_name(call: Callable[[], object], key: str) -> None:
+    """They once gave a modulus or a multiplier, even for negative arguments."""
     with pytest.raises(SceneError, match=f"^{key} = .*: must be a number"):
         call()
 
 
-def test_a_weight_that_does_not_pull_down_is_refused_however_small() -> None:
-    """Below 1e-8 m/s² any direction of gravity passed for down."""
+def test_gravity_that_is_not_vertical_is_refused_at_any_magnitude() -> None:
+    """Below 1e-8 m/s² any direction of gravity was once taken for downwards."""
     assert homog(panel(load__gravity=1e-9)).multiplier == homog(panel()).multiplier
     with pytest.raises(SceneError, match="no dead load but the weight"):
         homog(panel(load__gravity=[1e-9, 0.0]))
 
 
-def test_what_the_closed_form_knows_nothing_of_is_refused_without_a_table_of_models() -> None:
-    """A wall on a tie had the multiplier of the wall without, where `homog` was called by itself."""
+def test_direct_call_refuses_what_the_closed_form_does_not_cover() -> None:
+    """When `homog` was called directly, a wall with a tie got the multiplier of the wall without it."""
     tie = {"from": [0.0, 0.7], "to": [-1.0, 0.7], "area": 1e-4, "young": 2e11, "yield": 1e3}
     with pytest.raises(SceneError, match="it needs a wall without tie"):
         homog(panel(tie=[tie]))
 
 
-def test_model_reads_the_panel_from_its_geometry() -> None:
-    """The same wall, as length and height or as courses; a fixed course does not count."""
+def test_multiplier_depends_on_the_free_rectangle_only() -> None:
+    """The same for length and height or courses; a fixed first course does not count."""
     by_size = homog(panel(wall__height=1.44)).multiplier
     pattern: list[list[float]] = [[1] * 6, [0.5, 1, 1, 1, 1, 1, 0.5]] * 12
     assert homog(courses(pattern, 0.24, 0.06)).multiplier == by_size == pytest.approx(0.5420, abs=1e-4)
@@ -290,13 +292,13 @@ def test_model_reads_the_panel_from_its_geometry() -> None:
         ({"load__live": {"kind": "point", "at": [0.72, 0.72], "force": [1, 0]}}, "lateral"),
     ],
 )
-def test_model_says_which_assumption_a_scene_breaks(changes: dict[str, object], reason: str) -> None:
+def test_message_names_the_violated_assumption(changes: dict[str, object], reason: str) -> None:
     with pytest.raises(SceneError, match=reason):
         homog(panel(**changes))
 
 
-def test_materials_that_are_named_count_where_they_are_used() -> None:
-    """All blocks of granite, on joints of one other kind: the panel of those alone; of two kinds it is refused."""
+def test_only_assigned_materials_count() -> None:
+    """With all blocks and joints of assigned materials, those count; a mixture of two materials is refused."""
     everywhere: list[dict[str, Any]] = [{"joint": "rough", "between": ["*", each]} for each in ("*", "ground")]
     everywhere.append({"block": "granite", "box": [[-1.0, -1.0], [9.0, 9.0]]})
     changes: dict[str, Any] = {"materials": {"granite": {"density": 2600.0}}, "joints": {"rough": {"friction": 0.75}}}
@@ -309,14 +311,14 @@ def test_materials_that_are_named_count_where_they_are_used() -> None:
 
 
 @pytest.mark.parametrize("pattern", [[[1, 1, 1], [1, 1, 1]], [[1, 1], [0.5, -1, 0.5], [1, 1]], [[1, 2], [2, 1]]])
-def test_model_refuses_what_is_no_running_bond(pattern: list[list[float]]) -> None:
+def test_other_bonds_than_running_bond_are_refused(pattern: list[list[float]]) -> None:
     with pytest.raises(SceneError, match="running bond|rectangular"):
         homog(courses(pattern))
 
 
-def admits(slope: float, m: float, mu: float) -> bool:
-    """Whether blocks can follow a crack of a slope that opens across itself: one unknown, the shear of the heads."""
-    # Strain rates over cos² ψ, lengths over b / 2: heads open by slope² and slide by y, beds on either side alike.
+def is_compatible(slope: float, m: float, mu: float) -> bool:
+    """Whether block motions are compatible with an opening crack of this slope; the only unknown is the head shear."""
+    # Strain rates over cos² ψ, lengths over b / 2: heads open by slope² and slide by y; beds likewise on both sides.
     heads = [[mu, slope**2], [-mu, slope**2]]
     beds = [[-side + q * mu * -m, m - q * mu * (side * slope**2 + 2 * m * slope)] for side in (1, -1) for q in (1, -1)]
     rows, right = np.split(np.array(heads + beds), 2, axis=1)
@@ -325,18 +327,18 @@ def admits(slope: float, m: float, mu: float) -> bool:
 
 @settings(max_examples=60, deadline=None)
 @given(mu=st.floats(0.1, 3.0), m=st.floats(0.05, 4.0))
-@example(mu=1.1, m=0.5)  # heads give way first, by little
-@example(mu=1.1, m=4.0)  # beds do, by as little
-def test_the_crack_slope_is_the_steepest_that_blocks_can_follow(mu: float, m: float) -> None:
-    """A linear program of the compatible strain rates, below and above; above tan φ = 1 heads forbid m / tan φ."""
+@example(mu=1.1, m=0.5)  # heads govern, by a small margin
+@example(mu=1.1, m=4.0)  # beds govern, by a small margin
+def test_crack_slope_is_the_steepest_compatible_one(mu: float, m: float) -> None:
+    """Feasibility of a linear program just below and above it; for tan φ > 1 the heads exclude m / tan φ."""
     slope = crack_slope(2.0, m, mu)
-    assert admits(0.999 * slope, m, mu)
-    assert not any(admits(factor * slope, m, mu) for factor in (1.001, 1.1, 2.0, 5.0, 20.0))
+    assert is_compatible(0.999 * slope, m, mu)
+    assert not any(is_compatible(factor * slope, m, mu) for factor in (1.001, 1.1, 2.0, 5.0, 20.0))
 
 
 @pytest.mark.parametrize("friction", [1.2, 1.5, 2.0])
-def test_walls_of_ever_finer_blocks_come_to_bear_what_the_continuum_does(friction: float) -> None:
-    """Blocks of 4 : 1 that dilate: half as large, they are at two thirds of the distance or nearer."""
+def test_limit_load_converges_to_the_continuum_with_block_size(friction: float) -> None:
+    """Blocks 4 : 1 with dilatancy: half the block size leaves at most two thirds of the deviation."""
     apart = []
     for count in (8, 16):
         width = 1.6 / count
@@ -352,10 +354,10 @@ def test_walls_of_ever_finer_blocks_come_to_bear_what_the_continuum_does(frictio
 @pytest.mark.parametrize(("width", "height"), [(0.24, 0.06), (0.2, 0.1), (0.15, 0.15), (0.1, 0.2), (0.06, 0.24)])
 @pytest.mark.parametrize(("blocks", "courses"), [(3, 3), (7, 4), (9, 10)])
 @pytest.mark.parametrize("friction", [0.4, 0.6])
-def test_the_message_has_the_size_of_what_it_is_off(
+def test_message_gives_the_deviation_from_the_limit_load(
     width: float, height: float, blocks: int, courses: int, friction: float
 ) -> None:
-    """Panels beside those that were measured: the limit load of their blocks is where the message says."""
+    """For panels other than the measured ones: the deviation from the limit load is in the reported range, to 0.01."""
     size = {"length": blocks * width, "height": courses * height, "block_width": width, "block_height": height}
     scene = panel(joint__friction=friction, **{f"wall__{key}": value for key, value in size.items()})
     estimate, exact = homog(scene), limit(scene).multiplier
@@ -368,8 +370,8 @@ def test_the_message_has_the_size_of_what_it_is_off(
 
 @pytest.mark.parametrize("width", [0.24, 0.3, 0.35, 0.6, 0.7, 1.1])
 @pytest.mark.parametrize("blocks", [3.5, 7.5, 15.5])
-def test_the_message_does_not_depend_on_the_unit_of_length(width: float, blocks: float) -> None:
-    """Half blocks at the ends count for none, whatever the last bit of a sum of sizes."""
+def test_reported_deviation_does_not_depend_on_the_unit_of_length(width: float, blocks: float) -> None:
+    """Half blocks at the ends do not count, whatever the rounding of the sizes."""
     fewer = deviation(Bond(width, width / 4), np.floor(blocks) * width, 20 * width)
     for unit in (0.1, 1.0, 10.0):
         size = [round(x, 10) * unit for x in (blocks * width, 20 * width, width, width / 4)]

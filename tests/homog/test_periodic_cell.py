@@ -1,7 +1,7 @@
-"""One periodic cell of rigid blocks, cut out of a generated wall, gives the closed forms of `homog`.
+"""One periodic cell of rigid blocks, cut out of a generated wall, reproduces the closed forms of `homog`.
 
-The rigid kinematics is that of `dem`, the bond and the joints come from `scene`; the closed forms share
-nothing with them but the joint's stiffness and strength.
+The rigid kinematics is that of limit analysis, the bond and joints come from `scene`; the closed forms share only the
+stiffness and strength of the joints with them.
 """
 
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ from tests.walls import panel
 
 @dataclass(frozen=True)
 class Cell:
-    """Two blocks of an infinite wall and the joints that belong to them.
+    """Two blocks of an infinite wall and their joints.
 
-    `opening` and `slip` give the jumps per (six motions of the blocks, E11, E22, E12).
+    `opening` and `slip` are the jumps at the points per unit of (six motions of the blocks, E11, E22, E12).
     """
 
     points: JointPoints
@@ -31,7 +31,7 @@ class Cell:
 
 
 def cell(width: float, height: float) -> Cell:
-    """Cut the cell b × 2a out of a wall large enough to have it, with all its neighbours, inside."""
+    """Cut the cell b × 2a out of a wall that contains it with all its neighbours."""
     size = {"wall__block_width": width, "wall__block_height": height}
     scene = panel(**size, wall__length=6 * width, wall__height=6 * height)
     centroid = scene.blocks.centroid
@@ -60,7 +60,7 @@ def cell(width: float, height: float) -> Cell:
 
 
 @pytest.mark.parametrize("block", [(0.24, 0.06), (0.12, 0.06), (0.06, 0.06), (0.06, 0.24)])
-def test_elastic_energy_of_the_cell_is_that_of_the_closed_form(block: tuple[float, float]) -> None:
+def test_elastic_energy_of_the_cell_gives_the_closed_form_moduli(block: tuple[float, float]) -> None:
     """Condensing the blocks' motions out of the cell's energy leaves diag(A1111, A2222, 4 A1212)."""
     k_nh, k_th, k_nv, k_tv = 80.0, 30.0, 50.0, 20.0
     unit = cell(*block)
@@ -79,18 +79,18 @@ def test_elastic_energy_of_the_cell_is_that_of_the_closed_form(block: tuple[floa
 
 @pytest.mark.parametrize("block", [(0.24, 0.06), (0.06, 0.06), (0.06, 0.24)])
 @pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, -1, 1), (-1, -1, 1), (0.3, -2, 1)])
-def test_limit_analysis_of_the_cell_is_the_strength_domain(
+def test_limit_analysis_of_the_cell_gives_the_strength_domain(
     block: tuple[float, float], direction: tuple[float, float, float]
 ) -> None:
-    """Least dissipation of the cell for unit power of Σ, over its mechanisms."""
+    """Minimum dissipation of the cell over all mechanisms with unit power of Σ (kinematic theorem)."""
     joint = JointMaterial(0.6, 1.0, 1 / 0.6)
     unit = cell(*block)
     n = len(unit.points)
     strength = point_strength(joint, unit.points.area)
     power = np.zeros(9 + n)
     power[6:9] = direction[0], direction[1], 2 * direction[2]
-    no_spin = np.zeros((2, 9 + n))
-    no_spin[0, 0] = no_spin[1, 1] = 1  # the cell's translation does nothing
+    no_translation = np.zeros((2, 9 + n))
+    no_translation[0, 0] = no_translation[1, 1] = 1  # translation of the cell causes no jumps
     split = np.hstack([np.zeros((n, 9)), np.eye(n)])  # bounds |slip|
     found = linprog(
         np.concatenate([strength.tension @ unit.opening, np.zeros(n)]) / unit.area,
@@ -102,7 +102,7 @@ def test_limit_analysis_of_the_cell_is_the_strength_domain(
             ]
         ),
         b_ub=np.zeros(3 * n),
-        A_eq=np.vstack([power, no_spin]),
+        A_eq=np.vstack([power, no_translation]),
         b_eq=[1.0, 0, 0],
         bounds=[(None, None)] * 9 + [(0, None)] * n,
     )

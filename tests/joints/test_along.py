@@ -1,4 +1,4 @@
-"""Points between the ends of joints: they do the work of the ends, and integrate what is between them."""
+"""Points between the ends of joints: same work as the ends, and integration along the joint."""
 
 import numpy as np
 import pytest
@@ -24,8 +24,8 @@ def scatter_ends(normal: Array, tangential: Array, geometry: tuple[Array], force
 
 
 @pytest.mark.parametrize("points", [2, 3, 5])
-def test_points_do_the_work_of_their_ends(points: int) -> None:
-    """Σ A_p t_p δ_p = Σ A_e t_e δ_e for any tractions and jumps; an end alone is as the first point of a pair."""
+def test_points_do_same_work_as_ends(points: int) -> None:
+    """Σ A_p t_p δ_p = Σ A_e t_e δ_e for any tractions and jumps; a single end acts as the first point of a pair."""
     rng = np.random.default_rng(points)
     geometry, area = along((), PAIRS, AREA, lobatto(points))
     jump, traction = rng.normal(size=5), rng.normal(size=3 * points)
@@ -41,7 +41,7 @@ def test_points_do_the_work_of_their_ends(points: int) -> None:
     assert at_ends[2] == pytest.approx(7.0 * lobatto(points).weights[0])
 
 
-def test_a_kinematics_of_ends_becomes_one_of_points() -> None:
+def test_end_kinematics_are_interpolated_to_points() -> None:
     factor = np.array([1.0, 2.0, -1.0, 0.5, 3.0])
     geometry, _ = along((factor,), PAIRS, np.ones(5), lobatto(3))
     motion = np.arange(5.0)

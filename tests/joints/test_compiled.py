@@ -1,4 +1,4 @@
-"""Compiled kernels are kept for other processes, and never mistaken for one another."""
+"""Compiled kernels are cached for other processes, and never confused with one another."""
 
 import math
 import os
@@ -33,7 +33,7 @@ def tripled(x: float) -> float:
 
 
 def plus_one(law: Callable[[float], float]) -> Any:
-    """A kernel closed over another, as what interpolates along joints is."""
+    """A kernel closed over another one, like the interpolation along joints."""
 
     @kernel
     def loop(x: float) -> float:
@@ -49,8 +49,8 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.long
-def test_a_kernel_closed_over_another_is_found_by_the_next_process(tmp_path: Path) -> None:
-    """Two processes, two laws in one loop: the second compiles neither anew, and gets each right."""
+def test_kernel_closed_over_another_is_cached_for_next_process(tmp_path: Path) -> None:
+    """Two processes, two laws in one loop: the second process recompiles neither and gets both right."""
     program = """
 from tests.joints.test_compiled import doubled, plus_one, tripled
 loops = plus_one(doubled), plus_one(tripled)
@@ -62,8 +62,8 @@ print([loop(5.0) for loop in loops], sum(len(loop.stats.cache_misses) for loop i
     assert printed == ["[11.0, 16.0] 2\n", "[11.0, 16.0] 0\n"]
 
 
-def test_the_same_suite_in_another_place_compiles_nothing_and_a_changed_one_does(tmp_path: Path) -> None:
-    """What is kept goes by the source, not by where it is installed, and by that of the files it may call."""
+def test_cache_depends_on_source_not_on_install_path(tmp_path: Path) -> None:
+    """The cache key is the source of the package, not its location; it includes files that the kernel may call."""
     program = """
 from runningbond.joints.coulomb import shear_within
 shear_within(1.0, 0.0, 0.5)
@@ -85,7 +85,7 @@ print(len(shear_within.stats.cache_misses))
 
 
 def ramp(factor: float) -> Any:
-    """A kernel that stays one of its own in its caller, for it is long and called often; both know a number."""
+    """A kernel that is long and called often, so that its caller does not inline it; both depend on a number."""
 
     @kernel
     def raised(x: Any) -> None:
@@ -107,8 +107,8 @@ def ramp(factor: float) -> Any:
     return loop
 
 
-def test_kernels_of_two_processes_are_not_taken_for_one_another_by_a_third(tmp_path: Path) -> None:
-    """Numba numbers functions process by process: the first of one source have one symbol in both, whatever they do."""
+def test_kernels_of_two_processes_are_not_confused_by_a_third(tmp_path: Path) -> None:
+    """Numba numbers functions per process: the first functions of one source get the same symbol in both processes."""
     program = """
 import numpy as np
 from tests.joints.test_compiled import ramp
@@ -126,8 +126,8 @@ print([ramp(float(k))(np.ones(8)) for k in {}])
     assert turned == f"{three[:-2]}, {two[1:]}"
 
 
-def test_two_that_save_at_once_do_not_share_a_file(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each dwells where it has read the index and not yet written its own: left alone, both would choose one name."""
+def test_two_kernels_saved_at_once_do_not_share_a_file(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each thread waits between reading and writing the index; otherwise both would choose the same file name."""
     loops = plus_one(doubled), plus_one(tripled)
     caches = [SharedCache(loop.py_func) for loop in loops]
     for loop in loops:
@@ -155,7 +155,7 @@ def test_two_that_save_at_once_do_not_share_a_file(cache: Path, monkeypatch: pyt
     assert len(list(cache.rglob("*.nbc"))) == 2
 
 
-def test_a_damaged_or_full_cache_costs_a_compilation(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_damaged_or_full_cache_only_costs_compilation(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert plus_one(doubled)(5.0) == 11.0
     for path in cache.rglob("*.nb?"):
         path.write_bytes(path.read_bytes()[:-5])
@@ -171,8 +171,8 @@ def test_a_damaged_or_full_cache_costs_a_compilation(cache: Path, monkeypatch: p
     assert plus_one(tripled)(5.0) == 16.0
 
 
-def test_a_kernel_that_cannot_be_read_costs_the_others_of_its_source_nothing(cache: Path) -> None:
-    """A loop over a law of a user's own, whose module is gone, lies beside the loops over all other laws."""
+def test_unreadable_kernel_does_not_affect_others_of_its_source(cache: Path) -> None:
+    """A loop over a user's law whose module is gone is stored next to the loops over all other laws."""
     assert plus_one(doubled)(5.0) == 11.0
     assert plus_one(tripled)(5.0) == 16.0
     loops = sorted(cache.rglob("*loop*.nbc"))
@@ -185,8 +185,8 @@ def test_a_kernel_that_cannot_be_read_costs_the_others_of_its_source_nothing(cac
     assert not plus_one(doubled).stats.cache_misses, "is mended"
 
 
-def test_a_new_folder_of_kernels_takes_the_place_of_the_oldest(tmp_path: Path) -> None:
-    """And of nothing that is not such a folder."""
+def test_new_kernel_folder_replaces_the_oldest(tmp_path: Path) -> None:
+    """Folders that are no kernel folders stay."""
     cache = tmp_path / "runningbond"
     names = [f"{k:016x}" for k in range(7)]
     for k, name in enumerate([*names, "mine", "0123"]):
@@ -202,9 +202,7 @@ def test_a_new_folder_of_kernels_takes_the_place_of_the_oldest(tmp_path: Path) -
         assert list((cache / new).rglob("*.nbc"))
 
 
-def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_kernels_are_compiled_without_a_writable_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setattr("runningbond.joints.compiled.FOLDER", str(tmp_path / "file"))
     monkeypatch.setattr(
@@ -213,8 +211,8 @@ def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
     assert plus_one(doubled)(5.0) == 11.0
 
 
-def test_a_users_other_kernels_are_kept_where_numba_keeps_them(tmp_path: Path) -> None:
-    """The package is a guest in their Python, and would forget them with its own of other versions."""
+def test_other_kernels_of_user_stay_in_numba_default_cache(tmp_path: Path) -> None:
+    """Otherwise the package would delete them together with its own kernels of other versions."""
     (tmp_path / "mine.py").write_text(
         "from runningbond.joints import compiled\nimport numba\n"
         "@numba.njit(cache=True)\ndef half(x):\n    return x / 2\n"
@@ -227,8 +225,8 @@ def test_a_users_other_kernels_are_kept_where_numba_keeps_them(tmp_path: Path) -
     assert list((tmp_path / "__pycache__").glob("mine.half*.nbc"))
 
 
-def test_a_law_of_a_users_own_that_has_changed_is_compiled_anew(tmp_path: Path) -> None:
-    """The loop over it stands in another file, which has not; nor has the law's, where a number beside it has."""
+def test_changed_custom_law_is_recompiled(tmp_path: Path) -> None:
+    """The loop over the law is in another, unchanged file; the law's own code may be unchanged but not its constant."""
     program = "from mine import law\nfrom tests.joints.test_compiled import plus_one\nprint(plus_one(law)(5.0))"
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": f"{ROOT}:{tmp_path}"}
     text = "from runningbond.joints.compiled import kernel\nK = {}\n@kernel\ndef law(x):\n    return {} * x\n"
@@ -240,8 +238,8 @@ def test_a_law_of_a_users_own_that_has_changed_is_compiled_anew(tmp_path: Path) 
     assert printed == ["11.0\n", "16.0\n", "21.0\n", "26.0\n"]
 
 
-def test_a_user_without_a_home_has_kernels_and_scenes_and_no_drawing(tmp_path: Path) -> None:
-    """No HOME and no entry in the password file: whatever wants a folder of the user's says so or does without."""
+def test_user_without_home_has_kernels_and_scenes_but_no_drawing(tmp_path: Path) -> None:
+    """No HOME and no entry in the password file: code that needs a user folder reports this or does without."""
     program = """
 import pwd
 pwd.getpwuid = lambda uid: {}[uid]
@@ -270,10 +268,10 @@ except SceneError as error:
 
 
 @pytest.mark.usefixtures("cache")
-def test_the_time_that_compiling_takes_is_known_and_none_where_nothing_is_compiled(
+def test_compilation_time_is_measured(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """By a clock that ticks when it is looked at: once for a kernel and those that it calls, which are inside."""
+    """With a clock that ticks when read: once for a kernel including the kernels it calls; zero without compilation."""
     monkeypatch.setattr("runningbond.joints.compiled.time", SimpleNamespace(process_time=count().__next__))
     loop = ramp(3.0)
     with compilation() as compiled:

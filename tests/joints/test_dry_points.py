@@ -1,4 +1,4 @@
-"""Points in vector registers answer as points one by one; the rows of points are those of different materials."""
+"""Vectorized dry joint points equal the general loop; contacts are grouped by material."""
 
 import numpy as np
 import pytest
@@ -32,8 +32,8 @@ def dry(**changes: object) -> JointMaterial:
     ],
     ids=["closing", "stiff", "much stiffer", "strong", "hardening"],
 )
-def test_dry_points_within_their_cap_answer_as_any_points(material: JointMaterial) -> None:
-    """Random jumps about a pressure below the cap, step by step: opened, pressed, slid to and fro."""
+def test_dry_points_within_cap_equal_general_loop(material: JointMaterial) -> None:
+    """Random jumps around a pressure below the cap, step by step: opening, closing and sliding in both directions."""
     rng, of = np.random.default_rng(1), np.array(interface_constants(material))
     stiff = joint_stiffness(material).normal
     deepest = np.log1p(0.2 * 57e6 * 5650 / stiff) / 5650 if material.closure else 0.2 * 57e6 / stiff
@@ -49,21 +49,21 @@ def test_dry_points_within_their_cap_answer_as_any_points(material: JointMateria
         any_points(ROWS, of, opening, slip, slow, 1e-3, n_slow, t_slow)
         assert n == pytest.approx(n_slow, rel=1e-13, abs=1e-6)
         assert t == pytest.approx(t_slow, rel=1e-12, abs=1e-5)
-        slow[HISTORY.index("damage")] = 0.0  # of strength that is not there
+        slow[HISTORY.index("damage")] = 0.0  # damage of a strength that dry joints do not have
         assert fast == pytest.approx(slow, rel=1e-11, abs=1e-18 * stiff)
     assert (n < 0).any()
     assert (n == 0).any()
     assert (np.abs(t) >= 0.62 * -n * (1 - 1e-12)).any()
 
 
-def test_points_beyond_the_cap_or_with_strength_are_looked_at_one_by_one() -> None:
+def test_points_beyond_cap_or_with_strength_need_general_loop() -> None:
     history, shallow = np.zeros((len(HISTORY), 200)), np.full(200, -1e-5)
     of = np.array(interface_constants(dry()))
     history[2] = shallow
     bounds = dry_within(of, 0.1)
     assert not is_beyond(ROWS, shallow, history, bounds)
     deep = shallow.copy()
-    deep[17] = -1e-3  # 57 MPa is at 0.74 mm
+    deep[17] = -1e-3  # 57 MPa is reached at 0.74 mm
     assert is_beyond(ROWS, deep, history, bounds)
     history[HISTORY.index("crushed"), 5] = 1e-9
     assert is_beyond(ROWS, shallow, history, bounds)
@@ -75,8 +75,8 @@ def test_points_beyond_the_cap_or_with_strength_are_looked_at_one_by_one() -> No
         assert dry_within(np.array(interface_constants(strong)), 0.1)[0] < 0
 
 
-def test_contacts_that_are_of_alike_materials_are_one_row_of_points() -> None:
-    """Dry joints and sides that meet later are the same to the law, whichever stands between which."""
+def test_contacts_of_equal_materials_form_one_row() -> None:
+    """For the law, dry joints and sides that meet later are equal, in any order."""
     scene = courses([[1, 1], [1, 1]]).with_joint(elasticity=Stiffness(1e9, 4e8))
     outline = Outline.of(scene)
     contacts = find_contacts(outline, np.zeros(3 * len(scene.blocks)), outline.margin)

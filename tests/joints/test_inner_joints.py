@@ -1,4 +1,4 @@
-"""Blocks that may crack: inner joints on their vertical axes, with a strength of their own."""
+"""Blocks that may crack: inner joints on their vertical axes, with their own strength."""
 
 import itertools
 from typing import Any
@@ -24,7 +24,7 @@ def wall(inner: dict[str, Any] | None, **changes: Any) -> Scene:
     return panel(**size) if inner is None else panel(**size, inner_joint=inner)
 
 
-def test_every_whole_block_is_cut_on_its_axis_and_no_half_one() -> None:
+def test_whole_blocks_are_cut_on_their_axis_half_blocks_are_not() -> None:
     plain, cracked = wall(None), wall(WEAK)
     width = np.array([np.ptp(plain.blocks.polygon(i)[:, 0]) for i in np.flatnonzero(plain.wall).tolist()])
     whole = int((width > 0.2).sum())
@@ -37,14 +37,14 @@ def test_every_whole_block_is_cut_on_its_axis_and_no_half_one() -> None:
     assert not cracked.joints.inner[: len(plain.joints)].any()
 
 
-def test_strong_blocks_do_not_crack() -> None:
-    """As strong as they need be, the halves collapse as the whole blocks do, in every model."""
+def test_strong_inner_joints_give_limit_load_of_whole_blocks() -> None:
+    """Sufficiently strong halves have the limit load of whole blocks in `limit` and `dem-static`."""
     assert limit(wall(STRONG)).multiplier == pytest.approx(limit(wall(None)).multiplier, rel=1e-8)
     assert dem_static(wall(STRONG)).multiplier == pytest.approx(dem_static(wall(None)).multiplier, rel=1e-6)
 
 
-def test_a_single_block_cracks_at_the_load_of_its_halves() -> None:
-    """b × h cut in two dry halves: the leading half topples alone at (b/2) / h, the whole block at b / h."""
+def test_cut_block_topples_at_load_of_its_halves() -> None:
+    """b × h cut into two dry halves: the leading half topples alone at (b/2) / h, the whole block at b / h."""
     size = {"wall__length": 0.12, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.24}
     rough = {"joint__friction": 2.0}
     smooth = {**WEAK, "friction": 0.0}
@@ -59,8 +59,8 @@ def test_a_single_block_cracks_at_the_load_of_its_halves() -> None:
             assert found.upper >= exact * (1 - 1e-3)
 
 
-def test_weaker_blocks_never_carry_more() -> None:
-    """λ falls with the inner joints' cohesion from that of whole blocks to that of dry halves."""
+def test_weaker_inner_joints_reduce_limit_load() -> None:
+    """λ decreases with the inner joints' cohesion from the value of whole blocks to that of dry halves."""
     found = [limit(wall({**WEAK, "cohesion": c})).upper for c in (1e6, 3e3, 1e3, 0.0)]
     assert all(a is not None and b is not None and b <= a + 1e-9 for a, b in itertools.pairwise(found))
     assert found[-1] is not None
@@ -68,8 +68,8 @@ def test_weaker_blocks_never_carry_more() -> None:
     assert found[-1] < 0.6 * found[0]
 
 
-def test_a_drawing_is_cut_through_the_centroids() -> None:
-    """A trapezium keeps its area, and both pieces stay convex and counter-clockwise."""
+def test_drawn_block_is_cut_through_its_centroid() -> None:
+    """A trapezium keeps its area, and both pieces stay counter-clockwise."""
     trapezium = np.array([[0.0, 0.0], [3.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
     pieces, whole = cut_in_half([trapezium], 0.0)
 
@@ -95,12 +95,12 @@ def test_a_drawing_is_cut_through_the_centroids() -> None:
         ({"friction": 0.6}, "inner_joint.mortar: is missing; joint has a stiffness"),
     ],
 )
-def test_bad_inner_joints_are_refused_by_name(inner: dict[str, Any], message: str) -> None:
+def test_invalid_inner_joints_are_refused_by_key(inner: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError) as refused:
         scene_from_dict(content(inner_joint=inner, joint__mortar=MORTAR))
     assert message in str(refused.value)
 
 
-def test_the_closed_form_refuses_blocks_that_crack() -> None:
+def test_homog_refuses_inner_joints() -> None:
     with pytest.raises(SceneError, match="inner_joint"):
         homog(wall(WEAK))

@@ -1,4 +1,4 @@
-"""Joint points that crush and close: against rates integrated in fine steps, closed forms and energy."""
+"""Joint points that crush and close: against rate equations integrated in fine steps, closed forms and energy."""
 
 import math
 from dataclasses import replace
@@ -45,7 +45,7 @@ def law(material: JointMaterial = SOFT) -> KernelLaw:
 
 
 def follow(found: KernelLaw, opening: Array, slip: Array, viscosity: float = 0.0) -> tuple[Array, Array, Array]:
-    """Tractions and histories ``(rows, n)`` along a path of jumps."""
+    """Tractions and history rows ``(rows, n)`` along a path of jumps."""
     history = np.zeros((found.rows, 1))
     normal, tangential, histories = (
         np.zeros(len(opening)),
@@ -60,15 +60,15 @@ def follow(found: KernelLaw, opening: Array, slip: Array, viscosity: float = 0.0
 
 
 def legs(*corners: tuple[float, float], steps: int) -> Array:
-    """Path from rest through jumps at some corners, ``(2, n)``."""
+    """Path from rest through given jumps at its corners, ``(2, n)``."""
     parts = [np.linspace(a, b, steps, endpoint=False) for a, b in pairwise([(0.0, 0.0), *corners])]
     return np.ascontiguousarray(np.concatenate([*parts, [corners[-1]]]).T)
 
 
 def by_rates(material: JointMaterial, start: Array, rate: tuple[float, float], *, corner: bool) -> Array:
-    """p, |τ|, κ, plastic closure and energy spent after unit time at rates of closure and slip, begun on the cap.
+    """p, |τ|, κ, plastic closure and dissipated energy after unit time at rates of closure and slip, from the cap.
 
-    The rate equations of the cap, and of its corner with the cone, by Dormand & Prince: no return map.
+    The rate equations of the cap, and of its corner with the cone, by Dormand & Prince, without return mapping.
     """
     shear, friction, cap = material.cap_shear, material.friction, crushing_cap(material)
     curve = closure_curve(material)
@@ -98,8 +98,8 @@ def by_rates(material: JointMaterial, start: Array, rate: tuple[float, float], *
 
 @pytest.mark.parametrize("name", sorted(set(MATERIALS) - {"sudden"}))
 @pytest.mark.parametrize("steps", [1, 7, 200])
-def test_pressed_together_the_cap_is_followed_point_by_point(name: str, steps: int) -> None:
-    """−σ = σ_c(κ) where c(σ_c) + κ is the closure, to 1e-10, in steps of any length; what is spent is ∫ σ_c dκ."""
+def test_pure_compression_follows_cap(name: str, steps: int) -> None:
+    """−σ = σ_c(κ) for the closure c(σ_c) + κ, to 1e-10, in steps of any length; the dissipation is ∫ σ_c dκ."""
     material = MATERIALS[name]
     cap, curve = crushing_cap(material), closure_curve(material)
     kappa = np.sort(np.append(np.linspace(1e-6, 3e-3, steps), 8e-5))
@@ -114,8 +114,8 @@ def test_pressed_together_the_cap_is_followed_point_by_point(name: str, steps: i
 
 
 @pytest.mark.parametrize("material", [SOFT, PARABOLA, MATERIALS["closing"]])
-def test_crushing_spends_the_fracture_energy(material: JointMaterial) -> None:
-    """∫ −σ dδ over all of the closure is G_c to 1e-6, and so is what the point says it spent."""
+def test_crushing_dissipates_fracture_energy(material: JointMaterial) -> None:
+    """∫ −σ dδ over the whole closure is G_c to 1e-6, and so is the dissipation recorded by the point."""
     path = np.concatenate([np.linspace(0, 2e-4, 100_001), np.linspace(2e-4, 2e-2, 100_001)[1:]])
     normal, _, histories = follow(law(material), -path, 0 * path)
     assert np.trapezoid(-normal, path) == pytest.approx(ENERGY, rel=1e-6)
@@ -123,8 +123,8 @@ def test_crushing_spends_the_fracture_energy(material: JointMaterial) -> None:
 
 
 @pytest.mark.parametrize("material", [SOFT, replace(SOFT, compressive_fracture_energy=None), PARABOLA])
-def test_shear_on_the_cap_spends_the_fracture_energy_too(material: JointMaterial) -> None:
-    """Without friction to stop it, a joint that slides over its cap, hardly pressed, spends ∫ σ_c dκ."""
+def test_shear_on_cap_dissipates_fracture_energy(material: JointMaterial) -> None:
+    """Frictionless, a joint that slides on its cap under hardly any pressure dissipates ∫ σ_c dκ."""
     glued = replace(material, friction=0.0, cohesion=1e8, tensile_strength=1e8)
     slip = np.linspace(0, 2e-2, 20_001)
     _, tangential, histories = follow(law(glued), np.full_like(slip, -1e-9), slip)
@@ -137,8 +137,8 @@ def test_shear_on_the_cap_spends_the_fracture_energy_too(material: JointMaterial
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2, 0.4])
 @pytest.mark.parametrize("material", [MATERIAL, SOFT])
-def test_on_a_proportional_path_any_step_is_exact(material: JointMaterial, ratio: float) -> None:
-    """Where C k_t = k_n and the slip is C τ / p times the closure, traction and flow keep their directions: 1e-10."""
+def test_return_mapping_is_exact_on_proportional_path(material: JointMaterial, ratio: float) -> None:
+    """If C k_t = k_n and slip is C τ / p times closure, traction and flow keep their directions: 1e-10 for any step."""
     shear = 9.0
     rise = np.sqrt(1 + shear * ratio**2)
     first = STRENGTH / rise / K_N
@@ -161,10 +161,10 @@ def test_on_a_proportional_path_any_step_is_exact(material: JointMaterial, ratio
     ],
 )
 @pytest.mark.parametrize("material", [SOFT, MATERIALS["closing"]], ids=["soft", "closing"])
-def test_other_paths_converge_to_the_rates(
+def test_return_mapping_converges_to_rate_equations(
     material: JointMaterial, start: tuple[float, float] | None, rate: tuple[float, float], corner: bool
 ) -> None:
-    """The error of the implicit map halves with the step, and is taken out by extrapolation."""
+    """The error of the implicit mapping halves with the step, and is removed by extrapolation."""
     if start is None:  # |τ| = c + p tan φ on the cap
         a, b, c = 1 + 9 * 0.75**2, 2 * 9 * 0.75 * 3e5, 9 * 3e5**2 - STRENGTH**2
         p = (-b + np.sqrt(b * b - 4 * a * c)) / (2 * a)
@@ -184,8 +184,8 @@ def test_other_paths_converge_to_the_rates(
     assert 2 * found[1] - found[0] == pytest.approx(exact, rel=2e-6)
 
 
-def test_closure_is_its_curve_and_stores_the_work_of_closing() -> None:
-    """dp/dδ = k_n + g p up to the stiffest, by central differences; no work is lost on the way there and back."""
+def test_closure_follows_its_curve_and_stores_its_work() -> None:
+    """dp/dδ = k_n + g p up to the largest stiffness, by central differences; a closed cycle loses no work."""
     material = replace(MATERIAL, compressive_strength=None, closure=CLOSING)
     found, curve = law(material), closure_curve(material)
     closure = np.linspace(1e-7, 2e-4, 2000)
@@ -207,7 +207,7 @@ def test_closure_is_its_curve_and_stores_the_work_of_closing() -> None:
     assert found.stiffest == CLOSING.stiffest
 
 
-def test_a_crushed_joint_unloads_along_its_curve_and_opens_where_it_sits() -> None:
+def test_crushed_joint_unloads_along_its_curve_and_opens_at_plastic_closure() -> None:
     found = law(MATERIALS["closing"])
     far = 4e-4
     path = np.concatenate([np.linspace(0, far, 200), np.linspace(far, 0, 2000)])
@@ -221,13 +221,13 @@ def test_a_crushed_joint_unloads_along_its_curve_and_opens_where_it_sits() -> No
 
 
 def secant(opening: float) -> float:
-    """Traction of `MATERIAL` at an opening from where it sits, first time."""
+    """Traction of `MATERIAL` at an opening from its plastic closure, at first loading."""
     first, last = 2e5 / K_N, 2 * 20.0 / 2e5
     return K_N * opening if opening < first else 2e5 * max(0.0, 1 - (opening - first) / (last - first))
 
 
 def jumps(least: float, most: float) -> st.SearchStrategy[float]:
-    """Jumps [m] to a picometre: the squares of those of 1e-89 m are below what a number can hold."""
+    """Jumps [m] rounded to a picometre: the squares of jumps of 1e-89 m underflow."""
     return st.floats(least, most).map(lambda jump: round(jump, 12))
 
 
@@ -236,9 +236,7 @@ corners = st.lists(st.tuples(jumps(-4e-4, 2e-4), jumps(-1e-3, 1e-3)), min_size=1
 
 @given(corners=corners, name=st.sampled_from(sorted(MATERIALS)), viscosity=st.sampled_from([0.0, 1.0]))
 @settings(max_examples=40)
-def test_tractions_are_within_the_cap_and_the_cone(
-    corners: list[tuple[float, float]], name: str, viscosity: float
-) -> None:
+def test_tractions_stay_within_cap_and_cone(corners: list[tuple[float, float]], name: str, viscosity: float) -> None:
     material = MATERIALS[name]
     opening, slip = legs(*corners, steps=40)
     normal, tangential, histories = follow(law(material), opening, slip, viscosity)
@@ -255,7 +253,7 @@ def test_tractions_are_within_the_cap_and_the_cone(
 @given(corners=corners, name=st.sampled_from(sorted(MATERIALS)))
 @settings(max_examples=12)
 def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> None:
-    """∫ σ dδ + τ ds − Ψ never falls, and is what the point says it spent as steps shrink; closed loops among them."""
+    """∫ σ dδ + τ ds − Ψ never decreases and converges to the recorded dissipation, also for closed loops."""
     found = law(MATERIALS[name])
     opening, slip = legs(*corners, (0.0, 0.0), steps=2000)
     normal, tangential, histories = follow(found, opening, slip)
@@ -278,7 +276,7 @@ def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> 
     viscosity=st.sampled_from([0.0, 0.5]),
 )
 @settings(max_examples=50)
-def test_without_cap_and_closure_it_is_the_law_of_joints_that_soften(
+def test_law_without_cap_and_closure_equals_softening_law(
     corners: list[tuple[float, float]], energies: tuple[float | None, float | None], viscosity: float
 ) -> None:
     plain = replace(MATERIAL, compressive_strength=None, fracture_energy_1=energies[0], fracture_energy_2=energies[1])
@@ -297,8 +295,8 @@ G_I, G_II, F_T, C = 20.0, 60.0, 2e5, 3e5
 CURVED = replace(SOFT, fracture_energy_1=G_I, fracture_energy_2=G_II, softening="exponential")
 
 
-def test_exponential_softening_in_opening_spends_its_energy() -> None:
-    """σ = f_t exp(−(δ − δ_e) / a), a = G_I / f_t − δ_e / 2, and back to the origin; ∫ σ dδ = G_I to 1e-6."""
+def test_exponential_softening_in_opening_dissipates_fracture_energy() -> None:
+    """σ = f_t exp(−(δ − δ_e) / a), a = G_I / f_t − δ_e / 2, unloading to the origin; ∫ σ dδ = G_I to 1e-6."""
     first = F_T / K_N
     scale = G_I / F_T - first / 2
     opening = np.append(np.linspace(0, first, 50), first + np.linspace(0, 20 * scale, 20_001)[1:])
@@ -313,20 +311,20 @@ def test_exponential_softening_in_opening_spends_its_energy() -> None:
     assert back == pytest.approx([F_T / math.e, F_T / math.e / 2], rel=1e-12)
 
 
-def test_exponential_softening_in_shear_spends_its_energy() -> None:
-    """τ = c exp(−c s_p / G_II) without pressure, s_p = s − τ / k_t; and G_II without opening."""
+def test_exponential_softening_in_shear_dissipates_fracture_energy() -> None:
+    """τ = c exp(−c s_p / G_II) without pressure, s_p = s − τ / k_t; the area is G_II to 0.2 %."""
     slip = np.linspace(0, 20 * G_II / C, 20_001)
     _, tangential, histories = follow(law(CURVED), 0 * slip, slip)
     plastic = slip - tangential / K_T
     slides = plastic[:-1] > 1e-12
-    # Damage is that of the slip before the step.
+    # Damage follows from the slip before the step.
     assert tangential[1:][slides] == pytest.approx(C * np.exp(-C * plastic[:-1][slides] / G_II), rel=1e-9, abs=1e-6 * C)
     assert np.trapezoid(tangential, slip) == pytest.approx(G_II, rel=2e-3)
     assert histories[FRICTION_WORK, -1] == pytest.approx(G_II, rel=2e-3)
 
 
-def test_both_modes_wear_the_same_strength_on_an_exponential_branch() -> None:
-    """D = 1 − exp(−(x_I² + x_II²)^{1/2}), each x a jump beyond its elastic one in units of its branch's mean."""
+def test_both_modes_share_one_damage_on_exponential_branch() -> None:
+    """D = 1 − exp(−(x_I² + x_II²)^{1/2}), with x the inelastic jump of a mode in units of its branch's mean jump."""
     first = F_T / K_N
     scale = G_I / F_T - first / 2
     slip = np.linspace(0, 0.7 * G_II / C, 4_001)
@@ -338,8 +336,8 @@ def test_both_modes_wear_the_same_strength_on_an_exponential_branch() -> None:
     assert normal[-1] == pytest.approx(left, rel=1e-9)
 
 
-def test_a_joint_that_gives_back_more_than_its_energy_breaks_at_once_and_owns_up_to_all_of_it() -> None:
-    """G_c = 200 J/m² is less than f² / (2 k) = 556 J/m²: all that was stored is spent."""
+def test_snap_back_dissipates_all_stored_energy() -> None:
+    """G_c = 200 J/m² is less than f² / (2 k) = 556 J/m²: the joint fails at once and dissipates all stored energy."""
     found = law(MATERIALS["sudden"])
     path = np.linspace(0, 3e-3, 60_001)
     normal, _, histories = follow(found, -path, 0 * path)
@@ -348,8 +346,8 @@ def test_a_joint_that_gives_back_more_than_its_energy_breaks_at_once_and_owns_up
     assert histories[FRICTION_WORK, -1] == pytest.approx(np.trapezoid(-normal, path), rel=0.01)
 
 
-def test_laws_of_a_wall_with_crushing_joints() -> None:
-    """Plastic and softening joints may stand beside them; a wall without them keeps the kernel that it had."""
+def test_kernel_of_wall_with_crushing_joints() -> None:
+    """Plastic and softening joints may be combined with them; walls without crushing joints keep simpler kernels."""
     one = np.zeros(1, dtype=np.int64)
     dry = replace(MATERIAL, compressive_strength=None, fracture_energy_1=None)
     soft = replace(dry, fracture_energy_1=1.0)
@@ -365,8 +363,8 @@ def test_laws_of_a_wall_with_crushing_joints() -> None:
     assert INTERFACE.row("plastic slip") == PLASTIC_SLIP
 
 
-def test_a_corner_on_the_flank_of_the_cap_shears_off_without_pressure() -> None:
-    """At σ ≥ 0 the cap goes on at τ = σ_c / C^{1/2}, from either side of σ = 0 the same."""
+def test_cap_limits_shear_without_pressure() -> None:
+    """For σ ≥ 0 the cap continues at τ = σ_c / C^{1/2}, with the same limit on both sides of σ = 0."""
     strong = replace(MATERIAL, cohesion=1e8, tensile_strength=1e6, fracture_energy_1=None)
     for opening in (-1e-12, 0.0, 1e-12, 5e-6):
         _, tangential, histories = follow(law(strong), np.full(2, opening), np.array([1e-2, 2e-2]))
@@ -390,8 +388,8 @@ def test_a_corner_on_the_flank_of_the_cap_shears_off_without_pressure() -> None:
         ({"compressive_strength": STRENGTH, "compressive_fracture_energy": ENERGY}, True),
     ],
 )
-def test_joints_break_that_lose_strength(changes: dict[str, Any], breaks: bool) -> None:
-    """Beside one that crushes and closes for ever as strong, which does not make others break."""
+def test_joints_that_lose_strength_can_break(changes: dict[str, Any], breaks: bool) -> None:
+    """Also combined with a joint that keeps its strength, which does not count as breaking."""
     dry = JointMaterial(0.75, elasticity=Stiffness(K_N, K_T))
     other = replace(dry, compressive_strength=STRENGTH, closure=CLOSING)
     material = replace(dry, **changes)

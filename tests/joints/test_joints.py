@@ -14,7 +14,7 @@ from tests.walls import panel
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 5, 8])
-def test_rules_integrate_the_polynomials_they_should(n: int) -> None:
+def test_rules_integrate_polynomials_exactly(n: int) -> None:
     """Lobatto with n points is exact to degree 2n − 3, Gauss to 2n − 1."""
     for rule, degree in ((lobatto(n), 2 * n - 3), (gauss(n), 2 * n - 1)):
         for power in range(degree + 1):
@@ -24,20 +24,20 @@ def test_rules_integrate_the_polynomials_they_should(n: int) -> None:
         assert abs(missed) > 1e-6
 
 
-def test_lobatto_points_are_the_joint_ends_and_simpson_its_middle() -> None:
+def test_lobatto_points_include_joint_ends() -> None:
     assert lobatto(2).nodes.tolist() == [-1, 1]
     assert lobatto(3).weights == pytest.approx([1 / 3, 4 / 3, 1 / 3])
 
 
 @pytest.mark.parametrize("parts", [1, 2, 5])
-def test_trapezoids_are_exact_on_each_of_their_equal_parts(parts: int) -> None:
-    """To degree 1, and of x² by (2 / parts)³ / 6 too large on each."""
+def test_trapezoids_are_exact_for_linear_functions(parts: int) -> None:
+    """Exact to degree 1; ∫ x² is too large by (2 / parts)³ / 6 on each part."""
     rule = trapezoids(parts)
     exact = [2.0, 0.0, 2 / 3 + parts * (2 / parts) ** 3 / 6]
     assert [rule.weights @ rule.nodes**power for power in range(3)] == pytest.approx(exact, abs=1e-15)
 
 
-def test_points_stand_for_the_whole_joint_and_stay_on_it() -> None:
+def test_points_represent_the_whole_joint_and_lie_on_it() -> None:
     scene = panel()
     for rule in (lobatto(), lobatto(4), gauss(2)):
         points = joint_points(scene.joints, scene.thickness, rule)
@@ -50,7 +50,7 @@ def test_points_stand_for_the_whole_joint_and_stay_on_it() -> None:
 
 @given(st.floats(-math.pi, math.pi), st.floats(0, 0.9))
 def test_frame_is_right_handed_and_inset_moves_points_inwards(angle: float, inset: float) -> None:
-    """t = (−n_y, n_x); two points of a joint of length 2 stand 2 − 2 · inset apart."""
+    """t = (−n_y, n_x); the two points of a joint of length 2 are 2 − 2 · inset apart."""
     end = [2 * math.cos(angle), 2 * math.sin(angle)]
     points = joint_points(Joints(np.array([[0, 1]]), np.array([[[0.0, 0.0], end]])), 1.0, inset=inset)
     n, t = points.normal[0], points.tangent[0]
@@ -67,13 +67,13 @@ def test_mortar_stiffness_is_that_of_a_confined_layer() -> None:
     assert joint_stiffness(JointMaterial(0.6, elasticity=given)) == given
 
 
-def test_stiffness_that_nobody_gave_is_refused() -> None:
+def test_missing_stiffness_is_refused() -> None:
     with pytest.raises(SceneError, match=r"joint\.mortar"):
         joint_stiffness(JointMaterial(0.6))
 
 
 def up_to(most: float) -> st.SearchStrategy[float]:
-    """Numbers that a material may have: nothing, or not so little that it drowns."""
+    """Numbers that a material may have: zero, or large enough not to vanish in rounding."""
     return st.one_of(st.just(0.0), st.floats(1e-6, most))
 
 
@@ -87,7 +87,7 @@ def up_to(most: float) -> st.SearchStrategy[float]:
 def test_cone_from_its_vertex_is_mohr_coulomb_with_a_cut_off(
     friction: float, cohesion: float, cut: float, sigma: float, tau: float
 ) -> None:
-    """Same set as |τ| ≤ c − σ tan φ and σ ≤ f_t."""
+    """The same set as |τ| ≤ c − σ tan φ and σ ≤ f_t."""
     tension = cut * (cohesion / friction if friction > 1e-3 else cohesion)
     strength = point_strength(JointMaterial(friction, cohesion, tension), np.ones(1))
     violation = strength.violation(np.array([sigma]), np.array([tau]))[0]
@@ -104,7 +104,7 @@ def test_cone_from_its_vertex_is_mohr_coulomb_with_a_cut_off(
     pressure=st.floats(0, 50),
     share=st.floats(-1, 1),
 )
-def test_no_admissible_force_does_more_work_than_the_dissipation(
+def test_work_of_admissible_forces_does_not_exceed_dissipation(
     friction: float, cohesion: float, cut: float, slip: float, extra: float, pressure: float, share: float
 ) -> None:
     strength = point_strength(JointMaterial(friction, cohesion, cut * cohesion / friction), np.ones(1))
@@ -116,8 +116,8 @@ def test_no_admissible_force_does_more_work_than_the_dissipation(
 
 
 @pytest.mark.parametrize(("parts", "within"), [(1, 0.03), (2, 0.05), (3, 0.05), (4, 0.055)])
-def test_crushed_points_bear_bending_as_nearly_as_messages_say(parts: int, within: float) -> None:
-    """Filled with a share s of the strength from one end, against s (1 - s) / 2 of a line (`Run.crushing_note`)."""
+def test_error_of_crushed_points_in_bending_is_as_reported(parts: int, within: float) -> None:
+    """Crushed over a share s from one end, against s (1 - s) / 2 for a continuous joint (`Run.crushing_note`)."""
     rule = wall_rule(panel(joint__compressive_strength=1e7), parts)
     at = np.concatenate([(k + (1 + np.asarray(rule.nodes)) / 2) / parts for k in range(parts)])
     order = np.argsort(at, kind="stable")

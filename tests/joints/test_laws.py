@@ -1,4 +1,4 @@
-"""A law of one's own, written here: it runs in the models without a line of the package being touched."""
+"""Custom joint laws, defined here, run in the models without changes to the package."""
 
 import os
 import pickle
@@ -38,7 +38,7 @@ def springs(
     normal: Array,
     tangential: Array,
 ) -> None:
-    """σ = k_n δ_n, τ = k_t δ_t, with a dashpot beside each."""
+    """σ = k_n δ_n, τ = k_t δ_t, with a dashpot parallel to each spring."""
     segments, constants = parameters
     for segment in range(constants.shape[0]):
         k_n, k_t = constants[segment, 0], constants[segment, 1]
@@ -66,13 +66,13 @@ PLASTIC = replace(MATERIAL, law=None)
 
 
 def tower(**joint: object) -> Scene:
-    """Two blocks of 0.24 × 0.12 m, one on the other on a base, 0.12 m thick."""
+    """Two blocks of 0.24 × 0.12 m, stacked on a base, 0.12 m thick."""
     glue = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, **joint}
     return courses([[1], [1]], width=0.24, height=0.12, joint=glue)
 
 
-def test_springs_never_give_way_and_slip_by_force_over_stiffness() -> None:
-    """Pushed by five times its weight, a joint under a weight G slips by 5 G / (k_t A) and settles by G / (k_n A)."""
+def test_springs_do_not_fail_and_slip_by_force_over_stiffness() -> None:
+    """Under a lateral load of five times the weight G, a joint slips by 5 G / (k_t A) and settles by G / (k_n A)."""
     scene = tower(law=SPRINGS)
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
@@ -91,13 +91,13 @@ def test_springs_never_give_way_and_slip_by_force_over_stiffness() -> None:
 
 @kernel
 def torn(opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array) -> None:
-    """A law that is at its end."""
+    """A law that always raises an error."""
     if opening.size:
         raise ArithmeticError("no law beyond this")
 
 
-def test_laws_share_the_loop_over_steps_and_each_is_followed() -> None:
-    """What takes seconds to compile does not ask which law it is: nothing of it is compiled for a second one."""
+def test_laws_share_the_compiled_time_loop() -> None:
+    """The time loop, which takes seconds to compile, does not depend on the law: a second law does not recompile it."""
     slips, loops = [], []
     for law in (None, SPRINGS):
         run = Run(rigid_system(tower(law=law)))
@@ -109,8 +109,8 @@ def test_laws_share_the_loop_over_steps_and_each_is_followed() -> None:
     assert slips[0] > 2 * slips[1]
 
 
-def test_a_run_goes_on_in_another_process_by_the_kernels_that_are_there() -> None:
-    """An address means nothing, or something else, in a process that did not compile what stands there."""
+def test_unpickled_run_uses_kernels_of_its_own_process() -> None:
+    """A kernel's address is only valid in the process that compiled it."""
     runs = [Run(rigid_system(tower()))]
     states = [State.at_rest(runs[0].system) for _ in range(2)]
     runs[0].hold(states[0], 0.3, 100)
@@ -120,8 +120,8 @@ def test_a_run_goes_on_in_another_process_by_the_kernels_that_are_there() -> Non
     assert (states[0].motion == states[1].motion).all()
 
 
-def test_arrays_that_kernels_were_not_compiled_for_are_refused() -> None:
-    """Every second number of a longer array lies elsewhere than the kernel at an address would look for it."""
+def test_strided_arrays_are_refused() -> None:
+    """A kernel called by address assumes contiguous arrays."""
     run = Run(rigid_system(tower()))
     state = State.at_rest(run.system)
     state.motion = np.zeros((len(state.motion), 2))[:, 0]
@@ -129,21 +129,21 @@ def test_arrays_that_kernels_were_not_compiled_for_are_refused() -> None:
         run.hold(state, 0.0, 1)
 
 
-def test_an_error_that_a_law_raises_is_heard() -> None:
+def test_error_raised_by_law_is_propagated() -> None:
     scene = tower(law=Law("torn", constants_of_springs, torn, COMMON_ROWS, stored_in_springs))
     run = Run(rigid_system(scene))
     with pytest.raises(ArithmeticError, match="no law beyond this"):
         run.hold(State.at_rest(run.system), 0.0, 1)
 
 
-def test_a_model_that_cannot_use_a_law_says_which() -> None:
+def test_model_names_law_that_it_cannot_use() -> None:
     with pytest.raises(SceneError, match=r'joint\.law: "springs" has no response with a tangent, which dem-static'):
         dem_static(tower(law=SPRINGS))
     with pytest.raises(SceneError, match='"springs" keeps no "plastic slip" in its history'):
         SPRINGS.row("plastic slip")
 
 
-def test_laws_that_do_not_go_together_are_named() -> None:
+def test_incompatible_laws_are_named() -> None:
     of_point = np.zeros(1, dtype=np.int64)
     with pytest.raises(SceneError, match=r'joint\.law: .* "Coulomb" and "springs"'):
         kernel_law([PLASTIC, MATERIAL], of_point)
@@ -153,15 +153,15 @@ def test_laws_that_do_not_go_together_are_named() -> None:
     assert kernel_law([replace(soft, law=COULOMB)], of_point).law == COULOMB
 
 
-def test_what_is_no_law_is_refused_in_files_and_in_python() -> None:
+def test_invalid_law_is_refused_in_files_and_in_python() -> None:
     with pytest.raises(SceneError, match=r"joint\.law = 'brittle': must be a law of joints"):
         tower(law="brittle")
     with pytest.raises(SceneError, match=r"joint\.law = 'brittle': must be a law of joints"):
         JointMaterial(0.6, law="brittle")
 
 
-def test_what_is_kept_of_a_wall_is_kept_for_its_law_in_every_process() -> None:
-    """The fingerprint of an outcome tells laws apart, and is the same in another process."""
+def test_fingerprint_includes_law_and_is_equal_in_every_process() -> None:
+    """The fingerprint of an outcome distinguishes laws and is the same in another process."""
     program = """
 from runningbond.campaigns.fingerprint import fingerprint
 from tests.joints.test_laws import SPRINGS, tower
@@ -183,7 +183,7 @@ print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
 
 
 class Doubled(PointLaw):
-    """A response that is another one for a method alone."""
+    """A response that differs in one method only."""
 
     def __call__(self, opening: Array, slip: Array, plastic_slip: Array) -> PointResponse:
         return super().__call__(2 * opening, slip, plastic_slip)

@@ -1,4 +1,4 @@
-"""Cohesive joint points: what fracture spends, and that it never heals."""
+"""Cohesive joint points: dissipated fracture energy, and damage that never decreases."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -26,7 +26,7 @@ def law(joint: JointMaterial = JOINT, energy_1: float | None = 20.0, energy_2: f
 
 
 def follow(found: KernelLaw, opening: Array, slip: Array) -> tuple[Array, Array, Array]:
-    """Tractions along a path of jumps, and the history at its end."""
+    """Tractions along a path of jumps, and the history at the end."""
     history = np.zeros((found.rows, 1))
     normal, tangential = np.zeros(len(opening)), np.zeros(len(opening))
     n, t = np.zeros(1), np.zeros(1)
@@ -42,7 +42,7 @@ def work(force: Array, jump: Array) -> float:
 
 @pytest.mark.parametrize("energy", [1.0, 20.0, 500.0])
 def test_area_under_the_opening_branch_is_the_fracture_energy(energy: float) -> None:
-    """Pulled apart at once: ∫ σ dδ = G_I, to 1e-6, with the kinks of the branch on the path."""
+    """Pulled apart monotonically: ∫ σ dδ = G_I, to 1e-6, with the kinks of the branch on the path."""
     end = 2 * energy / 1e5
     peak = 1e5 / 1e11
     opening = np.concatenate([np.linspace(0, peak, 1000), np.linspace(peak, end, 4000)[1:], [2 * end]])
@@ -58,7 +58,7 @@ def test_area_under_the_opening_branch_is_the_fracture_energy(energy: float) -> 
 def test_area_under_the_slip_branch_is_the_fracture_energy(pressure: float) -> None:
     """Above the residual friction: ∫ (τ − σ tan φ) ds_p = G_II, to 1e-6 as steps shrink (extrapolated).
 
-    And so is the work that the point says it spent, less that of friction.
+    So is the dissipation recorded by the point, less that of friction.
     """
 
     def spent(n: int) -> tuple[float, float]:
@@ -75,8 +75,8 @@ def test_area_under_the_slip_branch_is_the_fracture_energy(pressure: float) -> N
 
 
 @pytest.mark.parametrize("crushes_at", [None, 1e9])
-def test_slip_to_and_fro_wears_cohesion_by_the_length_of_its_way(crushes_at: float | None) -> None:
-    """c (1 − s_p / s_c) with s_c = 2 G_II / c, wherever the point ends: not by how far it is from where it began."""
+def test_cyclic_slip_reduces_cohesion_by_accumulated_slip(crushes_at: float | None) -> None:
+    """c (1 − s_p / s_c) with s_c = 2 G_II / c and s_p the length of the slip path, not the distance from its start."""
     corners = 2e-4 * np.array([0, 1, -1, 1, 0])
     slip = np.concatenate([np.linspace(a, b, 4000, endpoint=False) for a, b in pairwise(corners)])
     _, tangential, _ = follow(law(replace(JOINT, compressive_strength=crushes_at)), np.zeros_like(slip), slip)
@@ -86,19 +86,19 @@ def test_slip_to_and_fro_wears_cohesion_by_the_length_of_its_way(crushes_at: flo
 
 
 @pytest.mark.parametrize("crushes_at", [None, 1e9])
-def test_slip_and_opening_wear_a_joint_by_the_root_of_their_squares(crushes_at: float | None) -> None:
-    """Three tenths of the way in slip, then, unloaded, four tenths in opening: half of its strength is gone."""
+def test_damage_combines_slip_and_opening_by_root_of_squares(crushes_at: float | None) -> None:
+    """Slip to 0.3 of its range, then, unloaded, opening to 0.4 of its range: half of the strength is lost."""
     first, last, worn = 1e5 / 1e11, 2 * 20.0 / 1e5, 0.3 * 2 * 80.0 / 1e5
     slip = np.append(np.linspace(0, worn + 0.7 * 1e5 / 4e10, 4000), [worn, worn])
     opening = np.zeros_like(slip)
     opening[-1] = first + 0.4 * (last - first)
     normal, _, history = follow(law(replace(JOINT, compressive_strength=crushes_at)), opening, slip)
     assert history[DAMAGE, 0] == pytest.approx(0.5, rel=1e-3)
-    # On the line from the origin to where as much damage is met in opening alone.
+    # On the line from the origin to the point of equal damage in pure opening.
     assert normal[-1] == pytest.approx(0.5 * 1e5 * opening[-1] / (first + 0.5 * (last - first)), rel=3e-3)
 
 
-def test_opening_unloads_to_the_origin_and_stays_damaged() -> None:
+def test_opening_unloads_to_origin_with_damage() -> None:
     path = np.concatenate([np.linspace(0, 1e-4, 500), np.linspace(1e-4, 0, 500), np.linspace(0, 1e-4, 500)])
     normal, _, _ = follow(law(), path, 0 * path)
     back, again = normal[500:1000], normal[1000:]
@@ -106,7 +106,7 @@ def test_opening_unloads_to_the_origin_and_stays_damaged() -> None:
     assert again == pytest.approx(back[::-1], abs=1e-9)
 
 
-def test_a_broken_joint_is_a_dry_one() -> None:
+def test_broken_joint_is_dry() -> None:
     opening = np.array([1.0, -1e-6, -1e-6, -1e-6])
     slip = np.array([0.0, 0.0, 1.0, 2.0])
     normal, tangential, _ = follow(law(), opening, slip)
@@ -115,10 +115,10 @@ def test_a_broken_joint_is_a_dry_one() -> None:
 
 
 @pytest.mark.parametrize("further", [{}, {"law": IMPACTS}, {"compressive_strength": 1e9}])
-def test_friction_spends_what_is_done_and_not_stored_to_rounding_in_steps_of_any_length(
+def test_friction_dissipates_work_that_is_not_stored(
     further: dict[str, Any],
 ) -> None:
-    """Under a constant pressure: the work of mean shears on each slip, less τ² / 2 k_t; turns within a step too."""
+    """At constant pressure, for steps of any length, also with reversals: work of mean shears less τ² / 2 k_t."""
     dry = kernel_law([JointMaterial(0.6, elasticity=Stiffness(1e11, 4e10), **further)], np.zeros(1, dtype=np.int64))
     slip = np.append(0.0, np.random.default_rng(1).normal(scale=4e-6, size=200).cumsum())
     _, tangential, history = follow(dry, np.full(len(slip), -1e-6), slip)
@@ -128,8 +128,8 @@ def test_friction_spends_what_is_done_and_not_stored_to_rounding_in_steps_of_any
 
 
 @pytest.mark.parametrize("branch", ["linear", "exponential"])
-def test_a_joint_without_tensile_strength_is_the_limit_of_weak_ones(branch: Any) -> None:
-    """However far it has opened it keeps its cohesion, for G_I is not spent; without any it loses that at once."""
+def test_joint_without_tensile_strength_is_limit_of_weak_joints(branch: Any) -> None:
+    """Opening does not use up G_I, so the cohesion is kept; with G_I = 0 it is lost at once."""
     opening, slip = np.array([0.0, 1e-15, 1e-3, -1e-6, -1e-6]), np.array([0.0, 0.0, 0.0, 0.0, 1e-5])
     joint = replace(JOINT, softening=branch, fracture_energy_1=0.0)
     shear = {
@@ -144,7 +144,7 @@ def test_a_joint_without_tensile_strength_is_the_limit_of_weak_ones(branch: Any)
     )
 
 
-def test_no_strength_and_no_energy_is_dry_friction_and_not_a_number_too_many() -> None:
+def test_zero_strength_and_zero_energy_is_dry_friction_without_nan() -> None:
     dry = law(JointMaterial(0.6), 0.0, 0.0)
     rng = np.random.default_rng(3)
     opening, slip = rng.normal(size=200) * 1e-5, rng.normal(size=200) * 1e-5
@@ -154,7 +154,7 @@ def test_no_strength_and_no_energy_is_dry_friction_and_not_a_number_too_many() -
     assert (np.abs(tangential) <= -0.6 * normal + 1e-9).all()
 
 
-def test_all_jumps_zero_give_no_force() -> None:
+def test_zero_jumps_give_zero_tractions() -> None:
     normal, tangential, _ = follow(law(), np.zeros(3), np.zeros(3))
     assert not normal.any()
     assert not tangential.any()
@@ -166,7 +166,7 @@ def test_all_jumps_zero_give_no_force() -> None:
     energy_2=st.sampled_from([None, 0.0, 5.0, 100.0]),
 )
 @settings(max_examples=100)
-def test_dissipation_is_never_negative_and_damage_never_heals(
+def test_dissipation_and_damage_never_decrease(
     steps: list[tuple[float, float]], energy_1: float | None, energy_2: float | None
 ) -> None:
     assume(energy_1 is not None)
@@ -189,10 +189,10 @@ def test_dissipation_is_never_negative_and_damage_never_heals(
     energy_2=st.sampled_from([0.0, 5.0, 100.0]),
 )
 @settings(max_examples=25)
-def test_work_done_on_a_point_and_not_stored_in_it_never_falls(
+def test_work_less_stored_energy_never_decreases(
     corners: list[tuple[float, float]], energy_1: float, energy_2: float
 ) -> None:
-    """∫ σ dδ + τ ds − Ψ of its tractions, whatever the point itself says it spent, along fine steps of any path."""
+    """∫ σ dδ + τ ds − Ψ from the tractions, independently of the recorded dissipation, along fine steps of any path."""
     found = law(energy_1=energy_1, energy_2=energy_2)
     fine = 4000
     legs = np.array([(0.0, 0.0), *corners])
@@ -203,13 +203,13 @@ def test_work_done_on_a_point_and_not_stored_in_it_never_falls(
     middle_n, middle_t = (normal[1:] + normal[:-1]) / 2, (tangential[1:] + tangential[:-1]) / 2
     done = middle_n * np.diff(opening) + middle_t * np.diff(slip)
     lost = np.concatenate([[0.0], np.cumsum(done) - stored[1:]])
-    # The trapezium is off where a step passes a kink, by what the springs store over that step; legs have few kinks.
+    # The trapezoidal rule is off at kinks, by the energy the springs store over that step; legs have few kinks.
     passing = 1e11 * np.abs(np.diff(opening)).max() ** 2 + 4e10 * np.abs(np.diff(slip)).max() ** 2
     assert (np.maximum.accumulate(lost) - lost).max() <= len(corners) * passing + 1e-300  # no denormal number
 
 
 def test_brittle_joints_carry_less_than_ductile_ones_and_tough_ones_as_much() -> None:
-    """A glued wall pushed sideways, from next to no fracture energy to plenty."""
+    """A bonded wall under lateral load, from almost no fracture energy to a large one."""
     stiff = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
     scene = panel(wall__length=0.48, wall__height=0.36, joint__cohesion=2e3, joint__mortar=stiff)
 
@@ -224,8 +224,8 @@ def test_brittle_joints_carry_less_than_ductile_ones_and_tough_ones_as_much() ->
     assert tough == pytest.approx(plastic, rel=0.03)
 
 
-def test_a_plastic_joint_beside_softening_ones_carries_its_tension_however_far_it_opens() -> None:
-    """σ = f_t from the end of the elastic branch on: damage on the way to an end that never comes must not vanish."""
+def test_plastic_joint_in_softening_kernel_keeps_tensile_strength() -> None:
+    """σ = f_t beyond the elastic branch: with an infinite fracture energy, damage must not reduce the strength."""
     plastic = replace(JOINT, elasticity=Stiffness(1e11, 4e10))
     mixed = [plastic, replace(plastic, fracture_energy_1=20.0, fracture_energy_2=80.0)]
     opening = np.array([1e-6, 1e-5, 1e-3, 0.1])

@@ -1,9 +1,9 @@
-"""Points of whole strength in vector registers answer, to the last bit, as points one by one."""
+"""Vectorized joint points of full strength give bitwise the results of the general loop."""
 
 import numpy as np
 import pytest
 
-from runningbond.joints.interface import HISTORY, ROW, any_points, interface_constants, interface_kernel
+from runningbond.joints.interface import BATCH, HISTORY, any_points, interface_constants, interface_kernel
 from runningbond.joints.sound_points import are_sound, can_be_sound, sound_points
 from runningbond.scene import Closure, JointMaterial, Stiffness
 
@@ -14,7 +14,7 @@ DAMAGE, SLIPPED, CRUSHED = (HISTORY.index(name) for name in ("damage", "slipped"
 
 
 def glued(**changes: object) -> JointMaterial:
-    """A joint of 1 MPa that softens exponentially and crushes at 5 MPa."""
+    """A joint of 1 MPa tensile strength that softens exponentially and crushes at 5 MPa."""
     given: dict[str, object] = {
         "cohesion": 1.4e6,
         "tensile_strength": 1e6,
@@ -39,10 +39,10 @@ MATERIALS = {
 
 @pytest.mark.parametrize("viscosity", [0.0, 0.1])
 @pytest.mark.parametrize("name", MATERIALS)
-def test_points_of_whole_strength_answer_as_any_points_to_the_last_bit(name: str, viscosity: float) -> None:
-    """Rows of few points under random jumps up to their strength and at times beyond, step by step.
+def test_sound_points_equal_general_loop_bitwise(name: str, viscosity: float) -> None:
+    """Rows of few points under random jumps up to their strength, and sometimes beyond, step by step.
 
-    They sit where they were seated, with a slip that they keep, and forget a slip that costs them no strength.
+    They start with a plastic closure and a plastic slip; accumulated slip that costs no strength may be ignored.
     """
     rng, of = np.random.default_rng(1), np.array(interface_constants(MATERIALS[name]))
     assert can_be_sound(of)
@@ -69,13 +69,13 @@ def test_points_of_whole_strength_answer_as_any_points_to_the_last_bit(name: str
     assert 0.1 < np.mean(sound) < 1.0
 
 
-def test_the_law_answers_as_any_points_wherever_its_points_are_sound() -> None:
-    """A few rows of many are shaken beyond their strength, and the others within it: the whole law beside one loop."""
+def test_interface_kernel_equals_general_loop_bitwise() -> None:
+    """A few rows of many are loaded beyond their strength, the others below it: the whole law against one loop."""
     rng, of = np.random.default_rng(2), np.array(interface_constants(glued(peak_closure=1e-5)))
-    count = 10 * int(ROW)
+    count = 10 * int(BATCH)
     rows, segments = (np.uint64(0), np.uint64(count)), np.array([0, count], dtype=np.uint64)
     fast, slow = np.zeros((2, len(HISTORY), count))
-    reach = np.where(np.arange(count) < 3 * int(ROW), 4.0, 0.4)
+    reach = np.where(np.arange(count) < 3 * int(BATCH), 4.0, 0.4)
     for _ in range(40):
         opening, slip = 1e-5 * reach * rng.uniform(-1, 1, (2, count))
         (n, t), (n_slow, t_slow) = np.zeros((2, 2, count))
@@ -86,13 +86,13 @@ def test_the_law_answers_as_any_points_wherever_its_points_are_sound() -> None:
         assert np.array_equal(fast, slow)
     assert (fast[DAMAGE] > 0).any()
     assert (fast[CRUSHED] > 0).any()
-    assert not fast[DAMAGE, 3 * int(ROW) :].any()
+    assert not fast[DAMAGE, 3 * int(BATCH) :].any()
 
 
 @pytest.mark.parametrize(
     ("row", "value"), [(DAMAGE, 1e-9), (SLIPPED, 1e-9), (CRUSHED, 1e-12)], ids=["damaged", "slipped", "crushed"]
 )
-def test_points_that_have_lost_strength_are_looked_at_one_by_one(row: int, value: float) -> None:
+def test_points_that_have_lost_strength_are_not_sound(row: int, value: float) -> None:
     of, history, still = np.array(interface_constants(glued())), np.zeros((len(HISTORY), N)), np.zeros(N)
     assert are_sound(ROWS, of, still, still, history, VISCOSITY)
     history[row, 17] = value
@@ -104,7 +104,7 @@ def test_points_that_have_lost_strength_are_looked_at_one_by_one(row: int, value
     [(1.01e-5, 0.0), (-5.01e-5, 0.0), (0.0, 3.6e-5), (-3e-5, 3.5e-5), (np.nan, 0.0), (0.0, np.nan)],
     ids=["torn", "crushed", "slid", "in the corner", "no number", "no slip"],
 )
-def test_points_that_reach_their_strength_are_looked_at_one_by_one(opening: float, slip: float) -> None:
+def test_points_that_reach_their_strength_are_not_sound(opening: float, slip: float) -> None:
     """1 MPa in tension, 1.4 MPa in shear, 5 MPa in compression at 1e11 and 4e10 Pa/m; without viscosity."""
     of, history = np.array(interface_constants(glued())), np.zeros((len(HISTORY), N))
     jumps = np.zeros((2, N))
@@ -114,7 +114,7 @@ def test_points_that_reach_their_strength_are_looked_at_one_by_one(opening: floa
     assert not are_sound(ROWS, of, *jumps, history, 0.0)
 
 
-def test_joints_without_strength_or_of_a_growing_stiffness_are_none_of_these() -> None:
+def test_dry_and_closing_joints_cannot_be_sound() -> None:
     dry = glued(cohesion=0.0, tensile_strength=0.0)
     for material in (dry, glued(closure=Closure(1e4, 1e12))):
         assert not can_be_sound(np.array(interface_constants(material)))

@@ -1,4 +1,4 @@
-"""Folders of tested walls that tests are about."""
+"""Folders of tested walls for the tests."""
 
 from pathlib import Path
 

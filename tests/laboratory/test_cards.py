@@ -1,4 +1,4 @@
-"""The picture of a wall of the laboratory."""
+"""The summary picture of a tested wall."""
 
 import io
 from dataclasses import replace
@@ -22,8 +22,8 @@ PIXEL = 1.0
 
 
 @pytest.mark.long
-def test_card_draws_the_motion_of_the_model_nearest_to_the_test_and_cuts_no_words(tmp_path: Path) -> None:
-    """Not that of the dearest, nor of one that knows no way; J4D is tall, and its title was cut."""
+def test_card_draws_the_model_nearest_to_the_test_and_clips_no_text(tmp_path: Path) -> None:
+    """Not the costliest model, nor one without a motion; the title of the tall wall J4D was once clipped."""
     walls = [wall for wall in read_folder(SHIPPED[1]) if wall.name == "J4D"]
     rungs = [LADDER[name] for name in ("rocking", "sliding", "limit-crushing", "rigid-finite", "rigid")]
     predictions, _ = predict(walls, rungs, scenes_of(walls, rungs), tmp_path, jobs=1)
@@ -38,8 +38,8 @@ def test_card_draws_the_motion_of_the_model_nearest_to_the_test_and_cuts_no_word
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_cracks_of_a_wall_that_was_pushed_to_the_left_are_mirrored(side: int, tmp_path: Path) -> None:
-    """Its record is turned round and it is predicted to the right; its cracks are dark on the side that it leant to."""
+def test_crack_map_of_a_wall_pushed_to_the_left_is_mirrored(side: int, tmp_path: Path) -> None:
+    """Its record is mirrored and the prediction goes to the right; the cracks are dark on the side it leaned to."""
     points = [line.split(",") for line in CURVE.split()[1:]]
     curve = "displacement_mm,force_kN\n" + "".join(f"{side * float(x):g},{side * float(y):g}\n" for x, y in points)
     folder = write_folder(tmp_path / "walls", GRANITE, curve=curve)
@@ -54,8 +54,8 @@ def test_cracks_of_a_wall_that_was_pushed_to_the_left_are_mirrored(side: int, tm
 
 
 @pytest.mark.parametrize("has_curve", [True, False])
-def test_the_legend_has_nothing_that_is_not_drawn(has_curve: bool, tmp_path: Path) -> None:
-    """It had the peaks of cycles of which no record is there."""
+def test_legend_lists_only_what_is_drawn(has_curve: bool, tmp_path: Path) -> None:
+    """It once listed the peaks of cycles for a wall without a record."""
     folder = write_folder(tmp_path / "walls", GRANITE.replace("Monotonic", "Cyclic"))
     if not has_curve:
         (folder / "WS.175.csv").unlink()
@@ -67,8 +67,8 @@ def test_the_legend_has_nothing_that_is_not_drawn(has_curve: bool, tmp_path: Pat
 
 
 @pytest.mark.parametrize("mode", ["L", "1", "RGB", "P"])
-def test_cracks_scanned_in_grey_are_drawn_in_grey(mode: str, tmp_path: Path) -> None:
-    """Those of one channel were drawn in the colours of a chart: paper yellow, and cracks dark purple."""
+def test_grey_crack_maps_are_drawn_in_grey(mode: str, tmp_path: Path) -> None:
+    """Single-channel scans were once drawn in a chart's colour map: yellow paper and dark purple cracks."""
     folder = write_folder(tmp_path / "walls", GRANITE)
     Image.fromarray(np.array([[255, 255], [0, 255]], dtype=np.uint8)).convert(mode).save(folder / "WS.175-cracks.png")
     (wall,), rung = read_folder(folder), LADDER["rocking"]
@@ -80,8 +80,8 @@ def test_cracks_scanned_in_grey_are_drawn_in_grey(mode: str, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("seconds", [(1.13, 1.37), (0.9, 1.1), (0.5, 0.5), (0.02, 30.0)])
-def test_seconds_of_models_that_cost_alike_are_labelled_apart(seconds: tuple[float, float], tmp_path: Path) -> None:
-    """Those from 1.13 to 1.37 s were 1.15 × 10⁰, 1.2 × 10⁰ and so on, one over the other."""
+def test_tick_labels_of_similar_costs_do_not_overlap(seconds: tuple[float, float], tmp_path: Path) -> None:
+    """Ticks from 1.13 to 1.37 s were once labelled 1.15 × 10⁰, 1.2 × 10⁰ and so on, one over the other."""
     rows = [GRANITE, GRANITE.replace("WS.175", "WS2.175")]
     walls, rung = read_folder(write_folder(tmp_path / "walls", *rows)), LADDER["limit"]
     predictions, _ = predict(walls, [rung], scenes_of(walls, [rung]), tmp_path, jobs=1)

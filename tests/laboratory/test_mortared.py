@@ -1,4 +1,4 @@
-"""Mortared walls between beams that are kept at their height, as interface elements have them."""
+"""Mortared walls between beams at fixed height, as modelled with interface elements."""
 
 import copy
 from dataclasses import replace
@@ -22,7 +22,7 @@ HEIGHT = 0.248
 
 
 def squat(softening: str, way: float = 6e-4) -> Scene:
-    """Four courses of J7D, two bricks long, pushed by 0.6 mm or another way [m]."""
+    """Four courses of J7D, two bricks long, pushed by `way` [m]."""
     path = WALLS["J7D"].scene_file
     assert path is not None
     tables: dict[str, Any] = copy.deepcopy(read_description(path))
@@ -35,8 +35,8 @@ def squat(softening: str, way: float = 6e-4) -> Scene:
     return scene_from_dict(tables)
 
 
-def test_a_wall_held_at_its_height_is_a_strut_whose_ledger_closes() -> None:
-    """All that pushes it goes into the ground, V H into the moments of ground and beam, and joints spend their work."""
+def test_wall_at_fixed_height_transfers_its_push_to_the_ground() -> None:
+    """The ground reaction equals the push, the joints' work never decreases; exponential softening lowers the peak."""
     solve = LADDER["fem-small"].model.solve
     outcomes = {softening: solve(squat(softening), 0.01) for softening in ("exponential", "linear")}
     peaks = {}
@@ -52,8 +52,8 @@ def test_a_wall_held_at_its_height_is_a_strut_whose_ledger_closes() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, rung in LADDER.items() if rung.base in ("dem-dynamic", "fem")])
-def test_rungs_that_follow_a_wall_do_so_in_campaigns_which_watch_it(name: str) -> None:
-    """As `runningbond validate` runs them: under an observer, whose moments are kept but of pieces of blocks."""
+def test_models_of_the_ladder_run_under_the_campaigns_observer(name: str) -> None:
+    """As `runningbond validate` runs them: under an observer that keeps moments, except for pieces of blocks."""
     answer = Task("squat", squat("exponential", 5e-5), LADDER[name].model, 0.01).run()
     assert answer.outcome is not None, answer.reason
     assert answer.outcome.status in ("collapse", "unbounded", "undecided"), answer.outcome.message
@@ -63,7 +63,7 @@ def test_rungs_that_follow_a_wall_do_so_in_campaigns_which_watch_it(name: str) -
 
 @pytest.mark.parametrize("parts", [1, 3, 6])
 def test_inner_joints_between_smaller_parts_are_stiffer(parts: int) -> None:
-    """Ten times E over the parts' height, 62 mm for the whole, where that is more than the scene's own."""
+    """Ten times E over the height of a part (62 mm for the whole block), if that exceeds the scene's own stiffness."""
     features = replace(LADDER["fem-small"].features, parts=parts)
     plain, crack = (scene_of(WALLS["J7D"], each).inner_joint for each in (LADDER["fem-small"].features, features))
     assert plain is not None
@@ -87,8 +87,8 @@ def test_inner_joints_between_smaller_parts_are_stiffer(parts: int) -> None:
         },
     ],
 )
-def test_inner_joints_are_as_stiff_beside_what_cracks(changes: dict[str, Any], tmp_path: Path) -> None:
-    """Whatever the beam, which does not, and a material that no block is of."""
+def test_crack_stiffness_depends_only_on_the_cracking_blocks(changes: dict[str, Any], tmp_path: Path) -> None:
+    """Neither on the beam, which does not crack, nor on a material that no block has."""
     wall = WALLS["J7D"]
     assert wall.scene_file is not None
     tables = copy.deepcopy(read_description(wall.scene_file))
@@ -102,7 +102,7 @@ def test_inner_joints_are_as_stiff_beside_what_cracks(changes: dict[str, Any], t
 
 @pytest.mark.parametrize("name", ["J4D", "J5D", "J6D", "J7D"])
 def test_the_scenes_have_the_published_joints(name: str) -> None:
-    """c = 1.4 f_t, one apex of the potential cracks and the joints, and every load the pressure over the top."""
+    """c = 1.4 f_t, the same apex for potential cracks and joints, and a load equal to the pressure on the top."""
     scene = scene_of(WALLS[name], LADDER["fem-small"].features)
     joint, crack = scene.joint, scene.inner_joint
     assert crack is not None

@@ -1,4 +1,4 @@
-"""Scores on curves and motions whose marks are known."""
+"""Scores for curves and motions with known marks."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -41,8 +41,8 @@ def curve(*points: tuple[float, float]) -> Array:
     return np.array(points, dtype=float)
 
 
-def test_marks_of_a_triangle_are_read_by_hand() -> None:
-    """Up to 100 N at 10 m along 10 N/m, and down by 5 N/m: .8 of it at 14 m."""
+def test_marks_of_a_triangular_curve() -> None:
+    """Up to 100 N at 10 m along 10 N/m, and down by 5 N/m: 0.8 of it at 14 m."""
     marks = marks_of(curve((0, 0), (10, 100), (20, 50)), cyclic=False)
     assert marks is not None
     assert (marks.strength, marks.stiffness, marks.at_peak, marks.at_loss) == pytest.approx((100, 10, 10, 14))
@@ -59,7 +59,7 @@ def test_secant_is_between_two_points_of_the_curve_at_three_tenths() -> None:
     assert marks.at_loss is None
 
 
-def test_a_record_to_the_left_first_is_read_as_its_mirror_image() -> None:
+def test_record_to_the_left_first_is_mirrored() -> None:
     points = [(0, 0), (1, 6), (2, 9), (0, -1), (-2, -7), (0, 1), (5, 12), (0, -2), (-5, -9), (0, 2), (10, 13.5)]
     record = curve(*points, (0, -3), (-10, -10), (0, 0))
     right, left = (marks_of(sign * record, cyclic=True) for sign in (1, -1))
@@ -68,8 +68,8 @@ def test_a_record_to_the_left_first_is_read_as_its_mirror_image() -> None:
     assert right.at_peak == 10
 
 
-def test_a_wall_that_was_unloaded_on_the_way_is_read_along_its_envelope() -> None:
-    """Where it has lost a fifth is between the last two points: 30 + 15 (12.5 - 10.4) / 3."""
+def test_record_with_unloading_is_read_along_its_envelope() -> None:
+    """The loss of a fifth lies between the last two points: 30 + 15 (12.5 - 10.4) / 3."""
     marks = marks_of(
         curve((0, 0), (2, 7), (1.2, 0), (2, 7), (8, 12), (20, 13), (18, 5), (20, 12.9), (30, 12.5), (45, 9.5)),
         cyclic=False,
@@ -79,8 +79,8 @@ def test_a_wall_that_was_unloaded_on_the_way_is_read_along_its_envelope() -> Non
 
 
 @pytest.mark.parametrize("most", [0.3, 0.9])
-def test_unloading_is_no_loss(most: float) -> None:
-    """40 kN up to 30 mm, where the wall is unloaded at its own 40 kN/mm: its force never falls on the way out."""
+def test_unloading_is_no_loss_of_strength(most: float) -> None:
+    """40 kN up to 30 mm, then unloaded along the wall's own 40 kN/mm: its force never falls on the way out."""
     back = np.arange(0.1, most, 0.1)
     out = np.column_stack([[0, 1, 20, 30], [0, 40, 40, 40]])
     marks = marks_of(np.concatenate([out, np.column_stack([30 - back, 40 - 40 * back])]) * (1e-3, 1e3), cyclic=False)
@@ -99,15 +99,15 @@ def test_unloading_is_no_loss(most: float) -> None:
         ("WS.250", None),
     ],
 )
-def test_loss_of_shipped_walls_is_what_their_records_say(name: str, at_loss: float | None) -> None:
-    """As it was read while points a little behind the farthest counted: none of these was read off an unloading."""
+def test_loss_of_strength_of_shipped_walls(name: str, at_loss: float | None) -> None:
+    """Values from when points slightly behind the farthest one also counted: none comes from an unloading branch."""
     marks = marks_of(WALLS[name].curve, cyclic=False)
     assert marks is not None
     assert (marks.at_loss is None) if at_loss is None else (marks.at_loss == pytest.approx(at_loss, rel=1e-6))
 
 
 def test_residual_counts_recorded_zeros() -> None:
-    """A loop to ±5 mm that is unloaded to 4 mm, whether zero force was recorded, passed, or the end of a part."""
+    """A loop to ±5 mm unloaded to 4 mm, with zero force recorded, crossed, or at the end of a part of the record."""
     points = [(0, 0), (5, 10), (4, 0), (-5, -10), (-4, 0), (5, 10), (4, 0)]
     parts = [*points[:3], (np.nan, np.nan), (4, 0), *points[3:]]
     passed = [(x, y or 1e-6) for x, y in points]
@@ -115,8 +115,8 @@ def test_residual_counts_recorded_zeros() -> None:
         assert residual(curve(*record)) == pytest.approx(4.0, rel=1e-6)
 
 
-def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed() -> None:
-    """A beam's own weight, a load along the wall and a bed of another joint, against limit analysis."""
+def test_hand_formulas_include_all_loads_and_the_weakest_bed() -> None:
+    """The beam's weight, a line load on the wall and a bed joint of another material, against limit analysis."""
     tables: dict[str, Any] = {
         "wall": {"length": 1.6, "height": 1.2, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},
         "block": {"density": 1e-3},
@@ -136,8 +136,8 @@ def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed()
     assert limit(scene).multiplier == pytest.approx(0.2 * pressed, rel=1e-5)
 
 
-def test_a_bed_slides_by_hand_where_its_stones_are_thinnest() -> None:
-    """The cohesion of the bed on which a storey steps back, against limit analysis; none is as thick as the wall."""
+def test_hand_formula_for_sliding_uses_the_thinnest_bed() -> None:
+    """Cohesion in the bed where a storey steps back, against limit analysis; no stone has the wall's thickness."""
     tables: dict[str, Any] = {
         "wall": {"length": 1.6, "height": 0.8, "block_width": 0.4, "block_height": 0.2, "thickness": 9.0},
         "block": {"density": 1e-3, "thickness": 0.3},
@@ -154,7 +154,7 @@ def test_a_bed_slides_by_hand_where_its_stones_are_thinnest() -> None:
     assert limit(scene).multiplier == pytest.approx(exact, rel=1e-5)
 
 
-def test_what_is_worked_out_by_hand_says_that_it_knows_no_ties() -> None:
+def test_hand_formulas_report_that_they_ignore_ties() -> None:
     tables: dict[str, Any] = {
         "wall": {"length": 0.8, "height": 0.6, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},
         "block": {"density": 2000.0},
@@ -170,8 +170,8 @@ def test_what_is_worked_out_by_hand_says_that_it_knows_no_ties() -> None:
 
 
 @pytest.mark.parametrize("end", [0.0, 1e-17, -1e-17])
-def test_a_wall_that_comes_back_to_rest_was_not_pushed_to_the_other_side(end: float) -> None:
-    """A slider of 12 N to 6 m that is drawn back to rest, to the last bit: that side was in the mean at -1e-17 m."""
+def test_return_to_rest_is_no_push_to_the_other_side(end: float) -> None:
+    """A slider of 12 N to 6 m returns to rest within rounding; -1e-17 m once counted as the other side in the mean."""
     record = elastic_plastic(10.0, 12.0, (3.0, 0.0, 6.0, 0.0))
     record[-1] = end, -8.0
     marks = marks_of(record, cyclic=True)
@@ -179,21 +179,21 @@ def test_a_wall_that_comes_back_to_rest_was_not_pushed_to_the_other_side(end: fl
     assert marks.strength == 12.0
 
 
-def test_a_record_that_begins_on_the_other_side_has_no_negative_stiffness() -> None:
-    """0.3 · 100 N at -1 m, where it began."""
+def test_record_starting_on_the_other_side_has_no_negative_stiffness() -> None:
+    """0.3 · 100 N is reached at -1 m, at the start."""
     marks = marks_of(curve((-1, 30), (10, 100)), cyclic=False)
     assert marks is not None
     assert marks.stiffness is None
 
 
-def test_curve_that_pushes_nowhere_has_no_marks() -> None:
+def test_curve_without_a_push_has_no_marks() -> None:
     assert marks_of(np.zeros((0, 2)), cyclic=False) is None
     assert marks_of(curve((0, 0), (1, -5)), cyclic=False) is None
     assert marks_of(curve((0, 1), (1, -1), (1, 6), (2, -1)), cyclic=True) is None
 
 
 def elastic_plastic(stiffness: float, most: float, path: tuple[float, ...]) -> Array:
-    """A rigid-plastic slider on a spring, through a path."""
+    """A rigid-plastic slider in series with a spring, along a displacement path."""
     rows, plastic, at = [(0.0, 0.0)], 0.0, 0.0
     for goal in path:
         for x in np.linspace(at, goal, 2001)[1:].tolist():
@@ -204,7 +204,7 @@ def elastic_plastic(stiffness: float, most: float, path: tuple[float, ...]) -> A
     return np.array(rows)
 
 
-def test_cycle_of_a_slider_dissipates_its_loop_and_leaves_what_it_slid() -> None:
+def test_slider_cycles_have_their_exact_work_and_residual() -> None:
     """10 N on 10 N/m to ±3 m: a loop dissipates 4 · 10 · (3 - 1), the first, from rest, 10 · (2 + 4)."""
     loop = elastic_plastic(10.0, 10.0, (3.0, -3.0, 3.0))
     assert loops(elastic_plastic(10.0, 10.0, (3.0, -3.0, 3.0, -3.0, 3.0))) == [
@@ -215,7 +215,7 @@ def test_cycle_of_a_slider_dissipates_its_loop_and_leaves_what_it_slid() -> None
     marks = marks_of(loop, cyclic=True)
     assert marks is not None
     assert marks.strength == pytest.approx(10.0)
-    assert marks.stiffness == pytest.approx(10.0)  # of a branch, though the loop is 4 m wide
+    assert marks.stiffness == pytest.approx(10.0)  # slope of a branch, although the loop is 4 m wide
     assert cycle_peaks(loop, (3.0, -3.0, 3.0)) == pytest.approx([10, -10, 10])
 
 
@@ -229,22 +229,22 @@ def test_cycle_of_a_slider_dissipates_its_loop_and_leaves_what_it_slid() -> None
         ((5.0, 1.0, 10.0, 2.0), (5.0, 10.0)),
     ],
 )
-def test_where_a_wall_is_let_go_back_to_is_no_end_of_a_cycle(path: tuple[float, ...], ends: tuple[float, ...]) -> None:
-    """Of a record that ends with half a loop the force near rest was one more peak, and its ratio any number."""
+def test_unloading_point_is_no_end_of_a_cycle(path: tuple[float, ...], ends: tuple[float, ...]) -> None:
+    """For a record that ends with half a loop, the force near rest once counted as a peak, with an arbitrary ratio."""
     assert cycle_ends(path) == ends
     assert cycle_peaks(elastic_plastic(10.0, 10.0, path), ends) == pytest.approx([10 * np.sign(x) for x in ends])
 
 
-def test_peaks_of_cycles_are_compared_where_walls_were_pushed_to() -> None:
-    """Curves that differ by a tenth but for the end of the record, near rest, where one bears fifty times the other."""
+def test_cycle_peaks_are_compared_at_the_amplitudes() -> None:
+    """Curves that differ by a tenth, except at their end near rest, where one force is fifty times the other."""
     points, rest = [(0, 0), (2, 40), (-2, -40), (4, 60)], [(-0.05, -0.1), (-0.05, -5)]
     record, own = (1e-3 * curve(*points, end) * (1, 1e6 * pace) for end, pace in zip(rest, (1, 1.1), strict=True))
     one = replace(prediction("WS1.100", "rigid", 1.0, curve=own), wall=replace(WALLS["WS1.100"], curve=record))
     assert one.row()["cycle_ratio"] == pytest.approx(1.1)
 
 
-def test_elastic_cycles_dissipate_nothing_whatever_the_rounding() -> None:
-    """A ratio to a measured rounding error would be a number of sixteen digits."""
+def test_elastic_cycles_dissipate_no_energy() -> None:
+    """Dividing by a measured work that is only rounding would give a meaningless ratio."""
     displacement = 0.03 * np.sin(np.linspace(0, 4 * np.pi, 41))
     found = loops(np.column_stack((displacement, 1e5 * np.tanh(200 * displacement))))
     assert [each.work for each in found] == [0.0] * len(found)
@@ -259,8 +259,8 @@ def test_swing_needs_both_sides() -> None:
     assert swing(curve((0, -5), (1, -4), (5, 4), (6, 5)), 3.0) == pytest.approx(3.0)
 
 
-def test_a_part_of_a_record_is_a_loop_if_it_comes_back_to_where_it_began() -> None:
-    """A slider of 10 N to ±3 m in a record that begins at -3 m: whole, in two parts that go on, and cut short."""
+def test_part_of_a_record_is_a_loop_if_it_returns_to_its_start() -> None:
+    """A slider of 10 N to ±3 m in a record that starts at -3 m: whole, in two consecutive parts, and cut short."""
     whole = elastic_plastic(10.0, 10.0, (3.0, -3.0, 3.0, -3.0))[4001:]
     gap = curve((np.nan, np.nan))
     for record in (whole, np.concatenate([whole[:2500], gap, whole[2499:]])):
@@ -269,8 +269,8 @@ def test_a_part_of_a_record_is_a_loop_if_it_comes_back_to_where_it_began() -> No
     assert loops(np.concatenate([whole, gap, whole[:2500]])) == [pytest.approx((3.0, 80.0), rel=1e-3)]
 
 
-def test_the_largest_loop_of_a_record_is_predicted_and_compared() -> None:
-    """A slider that is let go to rest after ±4 m, and one of half the friction along the path that is made of it."""
+def test_largest_loop_of_a_record_is_compared() -> None:
+    """A slider that returns to rest after ±4 m, and one of half the friction along the path derived from it."""
     record = elastic_plastic(10.0, 10.0, (2.0, -2.0, 4.0, -4.0, 0.0))
     along = growing(turning_points(record[:, 0]))
     (small, large), half = loops(record)[:2], loops(elastic_plastic(10.0, 5.0, along))
@@ -280,7 +280,7 @@ def test_the_largest_loop_of_a_record_is_predicted_and_compared() -> None:
 
 
 def test_energies_are_compared_loop_by_loop() -> None:
-    """The first of several alike, of loops that both have; what only one has does not count."""
+    """The first of several equal loops counts, and only amplitudes that both records have."""
     measured = [Loop(1.0, 5.0), Loop(1.0, 4.0), Loop(2.0, 10.0), Loop(4.0, 100.0)]
     predicted = [Loop(1.05, 10.0), Loop(2.1, 20.0), Loop(8.0, 1e3)]
     assert energy_ratio(predicted, measured) == pytest.approx(30 / 15)
@@ -288,7 +288,7 @@ def test_energies_are_compared_loop_by_loop() -> None:
 
 
 def test_recorded_loops_of_granite_walls_dissipate() -> None:
-    """Half a loop at the end of two of the records would take back more than most before; sums of closed parts in J."""
+    """Half a loop at the end of two records would give back more energy than most; sums of closed parts in J."""
     for name, number, work in (("WS1.100", 16, None), ("WS2.100", 7, 1799.1), ("WS1.175", 9, 1929.5)):
         marks = marks_of(WALLS[name].curve, cyclic=True)
         assert marks is not None
@@ -297,20 +297,20 @@ def test_recorded_loops_of_granite_walls_dissipate() -> None:
         assert work is None or sum(each.work for each in marks.loops) == pytest.approx(work, rel=0.02)
 
 
-def test_a_reload_below_the_envelope_is_no_loss() -> None:
-    """WS2.100 bears 36 kN of 41 to its end; its record passes 24 kN at 10 mm on the way up from another cycle."""
+def test_reloading_below_the_envelope_is_no_loss_of_strength() -> None:
+    """WS2.100 carries 36 of 41 kN to the end; its record passes 24 kN at 10 mm while reloading in another cycle."""
     marks = marks_of(WALLS["WS2.100"].curve, cyclic=True)
     assert marks is not None
     assert marks.at_loss is None
 
 
-def test_a_curve_whose_first_point_is_beyond_starts_at_rest() -> None:
+def test_curve_without_an_origin_starts_at_rest() -> None:
     marks = marks_of(curve((5, 80), (10, 86)), cyclic=False)
     assert marks is not None
     assert marks.stiffness == pytest.approx(16.0)
 
 
-def test_backbone_goes_ever_farther_from_rest() -> None:
+def test_backbone_displacement_increases_monotonically() -> None:
     path = curve((-1, -1), (1, 2), (0, 0), (2, 3), (1.5, 1))
     assert backbone(path).tolist() == [[0, 0], [1, 2], [2, 3]]
     assert first_crossing(backbone(path), 2.5) == pytest.approx(1.5)
@@ -332,7 +332,7 @@ def granite() -> Scene:
     return scene_of(WALLS["WS.250"], Features(driven=False))
 
 
-def test_wall_that_turns_about_its_toe_rocks(granite: Scene) -> None:
+def test_wall_rotating_about_its_toe_rocks(granite: Scene) -> None:
     motion = still(granite)
     arm = granite.blocks.centroid[granite.wall] - (1.0, 0.0)
     motion[granite.wall] = np.column_stack([arm[:, 1], -arm[:, 0], -np.ones(len(arm))])
@@ -340,26 +340,26 @@ def test_wall_that_turns_about_its_toe_rocks(granite: Scene) -> None:
 
 
 @pytest.mark.parametrize("level", [0.0, 0.45, 1.2])
-def test_wall_that_is_cut_along_a_bed_joint_slides(granite: Scene, level: float) -> None:
+def test_wall_cut_along_a_bed_joint_slides(granite: Scene, level: float) -> None:
     motion = still(granite)
     motion[granite.wall & (granite.blocks.centroid[:, 1] > level), 0] = 1.0
     assert moved(granite, motion) == SLIDING
     assert max(bed_slips(granite, motion)) == pytest.approx(1.0)
 
 
-def test_wall_that_parts_along_its_steps_fails_on_the_diagonal(granite: Scene) -> None:
+def test_wall_with_a_stepped_crack_fails_on_the_diagonal(granite: Scene) -> None:
     motion = still(granite)
     x, y = granite.blocks.centroid.T
     motion[granite.wall & (y > 1.2 - 1.1 * x), 0] = 1.0
     assert moved(granite, motion) == DIAGONAL
 
 
-def test_wall_that_rests_has_no_mode(granite: Scene) -> None:
+def test_wall_at_rest_has_no_mode(granite: Scene) -> None:
     assert moved(granite, still(granite)) is None
     assert predicted_mode(granite, Outcome("", "", "undecided")) is None
 
 
-def test_words_of_reports_name_modes_once() -> None:
+def test_report_words_map_to_unique_modes() -> None:
     assert measured_modes(("R", "TC")) == (ROCKING,)
     assert measured_modes(("TC", "SL", "MIXED")) == (ROCKING, SLIDING)
 
@@ -368,7 +368,7 @@ def test_words_of_reports_name_modes_once() -> None:
 
 
 def test_formulas_are_those_of_the_readme() -> None:
-    """N L / (2 H₀) and N tan φ; J4D bends doubly, N L / H, and has a cohesion, c L t + N tan φ."""
+    """N L / (2 H₀) and N tan φ; J4D bends in double curvature, N L / H, and has cohesion, c L t + N tan φ."""
     assert by_hand(scene_of(WALLS["WS.100"], Features(driven=False))) == pytest.approx(
         {"rocking": 1e5 / 2.65, "sliding": 65e3}
     )
@@ -384,14 +384,14 @@ def prediction(wall: str, model: str, load: float | None, **other: object) -> Pr
     return Prediction(WALLS[wall], rung, scene, Outcome(wall, model, status, load, **other))  # type: ignore[arg-type]
 
 
-def test_error_is_of_the_mean_of_both_sides() -> None:
-    """WS1.100 took 39 and 43.3 kN."""
+def test_error_refers_to_the_mean_of_both_sides() -> None:
+    """The measured forces of WS1.100 are 39 and 43.3 kN."""
     assert prediction("WS1.100", "limit", 41.15e3).error == pytest.approx(0.0)
     assert prediction("WS.100", "limit", 40.7e3).error == pytest.approx(0.1)
     assert prediction("WS.100", "limit", None).error is None
 
 
-def test_wall_that_was_followed_to_the_end_of_its_path_is_an_answer_and_another_is_not() -> None:
+def test_prediction_counts_only_if_its_path_is_complete() -> None:
     far = WALLS["WS.100"].path[0]
     for end, status in ((far, "followed"), (far / 2, "undecided")):
         one = prediction("WS.100", "rigid", None, curve=curve((0, 0), (end / 2, 30e3), (end, 37e3)))
@@ -400,8 +400,8 @@ def test_wall_that_was_followed_to_the_end_of_its_path_is_an_answer_and_another_
     assert one.row()["dV"] is None
 
 
-def test_totals_leave_out_sw_30_and_count_who_is_nearer_than_both_formulas() -> None:
-    """WS.100, 37 kN: rocking 37.7. WS.250, 85.9: rocking 94.3."""
+def test_totals_leave_out_sw_30_and_count_walls_nearer_than_both_formulas() -> None:
+    """WS.100 measured 37 kN, rocking formula 37.7; WS.250 measured 85.9, formula 94.3."""
     own = [
         prediction(wall, model, load)
         for wall, loads in {"WS.100": (37.1e3, 37.7e3), "WS.250": (99e3, 94.3e3), "SW.30.1": (1.0, 1.0)}.items()
@@ -411,31 +411,31 @@ def test_totals_leave_out_sw_30_and_count_who_is_nearer_than_both_formulas() -> 
     assert (limit.walls, limit.answers, limit.beaten) == (2, 2, 1)
     assert limit.worst == pytest.approx(99 / 85.9 - 1)
     assert limit.median == pytest.approx((99 / 85.9 - 1 + 0.1 / 37) / 2)
-    assert cheapest(totals(own)) is None  # neither knows of a stiffness
+    assert cheapest(totals(own)) is None  # neither model has a stiffness
 
 
-def test_a_wall_in_mortar_is_none_of_the_dry_ones_where_its_table_says_nothing_of_its_joints() -> None:
+def test_wall_kind_follows_its_scene_if_the_table_lacks_joints() -> None:
     for name, kind in (("J4D", "mortar"), ("WS.100", "dry")):
         one = prediction(name, "limit", 1.0)
         silent = replace(one.wall.row, entries={**one.wall.row.entries, "joints": ("", "")})
         assert kind_of(replace(one, wall=replace(one.wall, row=silent))) == kind
 
 
-def test_model_that_is_none_of_the_ladder_is_refused() -> None:
+def test_unknown_model_of_the_ladder_is_refused() -> None:
     with pytest.raises(SceneError, match="--models = 'limt': must be of .*; did you mean \"limit\""):
         find_rungs("rocking, limt")
     assert [rung.name for rung in find_rungs("limit,rocking,limit")] == ["limit", "rocking"]
     assert find_rungs(None) == list(LADDER.values())
 
 
-def test_two_curves_of_the_campaign_are_what_their_files_say() -> None:
+def test_two_measured_curves_match_their_files() -> None:
     assert WALLS["WS.250"].curve[-1, 0] == pytest.approx(0.04311)
     assert WALLS["SW.200.1"].curve[:, 1].max() == pytest.approx(72.2e3)
     assert Path(str(WALLS["WS.250"].cracks)).name == "WS.250-cracks.png"
 
 
 def toe_broken_by(broken: float, force: tuple[float, ...], condition: Condition = "free") -> str | None:
-    """Mode of a wall whose beam is shifted and does not turn, with a toe that is broken in the third row of its way."""
+    """Mode of a wall with a translated beam and a toe broken by `broken` [m] in the third row of its path."""
     scene = scene_of(WALLS["SW.200.1"], Features(crushes=True))
     assert scene.beam is not None
     scene = replace(scene, beam=replace(scene.beam, condition=condition))
@@ -447,8 +447,8 @@ def toe_broken_by(broken: float, force: tuple[float, ...], condition: Condition 
     return predicted_mode(scene, outcome)
 
 
-def test_toe_that_is_broken_as_far_as_is_seen_crushes() -> None:
-    """0.15 mm are seen, and 0.06 are not, where the force has fallen to 0.8, though it is 0.12 at the end."""
+def test_visibly_broken_toe_means_rocking_with_crushing() -> None:
+    """0.15 mm is visible, 0.06 mm is not, at the row where the force has fallen to 0.8; later rows do not count."""
     assert toe_broken_by(1.5e-4, (0, 10, 8, 9)) == ROCKING
     assert toe_broken_by(0.6e-4, (0, 10, 8, 9)) != ROCKING
     assert toe_broken_by(0.6e-4, (0, 10, 9, 9)) == ROCKING
@@ -462,11 +462,11 @@ def test_toe_that_is_broken_as_far_as_is_seen_crushes() -> None:
         ((0, 1, 2, 3), (0, 10, 8.1, 8.1), 3),
         ((0, 1, 2, 3), (0, 10, 8, 7), 2),
         ((0, 1, 2, 3, 4), (0, 5, 3, 10, 9), 4),  # a drop on the way up is no failure
-        ((0, 2, 1, -2, 2.5), (0, 10, 2, -10, 9), 4),  # nor is unloading
+        ((0, 2, 1, -2, 2.5), (0, 10, 2, -10, 9), 4),  # unloading is no failure
         ((0, 2, 1, -2, 2.5), (0, 10, 2, -10, 7), 4),
     ],
 )
-def test_wall_fails_where_its_force_has_fallen_or_at_the_end(
+def test_failure_is_at_the_loss_of_force_or_at_the_end(
     moved: tuple[float, ...], force: tuple[float, ...], row: int
 ) -> None:
     assert failing(np.column_stack([moved, force]).astype(float)) == row
@@ -474,7 +474,7 @@ def test_wall_fails_where_its_force_has_fallen_or_at_the_end(
 
 @pytest.mark.parametrize("again", [1.0, np.nextafter(1.0, 0.0), np.nextafter(1.0, 2.0), 1 - 1e-12, 1 + 1e-12])
 @pytest.mark.parametrize("falls", [9.0, 5.0])
-def test_an_amplitude_that_comes_again_is_no_farther(again: float, falls: float) -> None:
-    """The second time is as far as the first but for rounding, whether the wall bears as much then or half of it."""
+def test_repeated_amplitude_does_not_move_the_failure(again: float, falls: float) -> None:
+    """The second peak is at the same displacement except for rounding, with 90 % or half of the force."""
     curve = np.column_stack([[0, 1, -1, again, 0], [0, 10, -10, falls, 0]])
     assert failing(curve) == 1

@@ -1,4 +1,4 @@
-"""``runningbond validate``: what it prints, writes, keeps and refuses, on walls that are not shipped."""
+"""``runningbond validate``: its output, files, cache and refusals, for walls that are not shipped."""
 
 import json
 from dataclasses import replace
@@ -41,12 +41,12 @@ def walls(tmp_path: Path) -> list[str]:
 
 
 def printed(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
-    """The one object on standard output, none of whose numbers is NaN."""
+    """The single JSON object on standard output, without NaN."""
     content: dict[str, Any] = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     return content
 
 
-def test_walls_that_are_not_shipped_are_predicted_and_scored(
+def test_own_walls_are_predicted_and_scored(
     walls: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Rocking: 175 / 2.65 and 100 / 2 kN."""
@@ -74,8 +74,8 @@ def test_walls_that_are_not_shipped_are_predicted_and_scored(
     assert all((out / f"{name}.png").is_file() for name in ("error-over-cost", "wall-WS.175", "wall-SW.100.1"))
 
 
-def test_pictures_of_walls_that_are_gone_from_the_data_are_taken_away(tmp_path: Path) -> None:
-    """Those of the page before, and nobody else's."""
+def test_pictures_of_removed_walls_are_deleted(tmp_path: Path) -> None:
+    """Only those of the previous page; other files stay."""
     out, folder = tmp_path / "out", tmp_path / "walls"
     arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]
     write_folder(folder, GRANITE, SANDSTONE)
@@ -86,7 +86,7 @@ def test_pictures_of_walls_that_are_gone_from_the_data_are_taken_away(tmp_path: 
     assert {path.name for path in out.glob("wall-*.png")} == {"wall-WS.175.png", "wall-of-mine.png"}
 
 
-def test_walls_that_differ_in_name_alone_are_computed_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_walls_that_differ_only_in_name_are_computed_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     twin = GRANITE.replace("WS.175", "WS2.175").replace(",61,", ",70,")
     folder, out = write_folder(tmp_path / "walls", GRANITE, twin), tmp_path / "out"
     assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "limit", "--json"]) == 0
@@ -98,7 +98,7 @@ def test_walls_that_differ_in_name_alone_are_computed_once(tmp_path: Path, capsy
     assert not (out / "WS2.175").exists()
 
 
-def test_what_is_kept_is_not_computed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_kept_results_are_not_computed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder, out = write_folder(tmp_path / "walls", GRANITE), str(tmp_path / "out")
     for models, cases, kept, more in (
         ("rocking", 1, 0, []),
@@ -114,9 +114,7 @@ def test_what_is_kept_is_not_computed_again(tmp_path: Path, capsys: pytest.Captu
         assert "**" not in told
 
 
-def test_row_that_changes_is_predicted_again(
-    walls: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_changed_row_is_predicted_again(walls: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["validate", *walls, *QUICK, "--json"]) == 0
     before = printed(capsys)["walls"]
     write_folder(tmp_path / "walls", GRANITE, SANDSTONE.replace(",200,1000,100,", ",200,2000,100,"))
@@ -128,7 +126,7 @@ def test_row_that_changes_is_predicted_again(
 
 
 def leaning(side: int) -> dict[str, Any]:
-    """A wall that is short at the top behind where it is pushed: to the right with 1, its mirror image with -1."""
+    """A wall shortened at the top behind its pushed side: pushed to the right with 1, its mirror image with -1."""
     courses = [[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1], [-1, 1, 1] if side > 0 else [1, 1]]
     return {
         "wall": {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2, "courses": courses},
@@ -140,10 +138,10 @@ def leaning(side: int) -> dict[str, Any]:
     }
 
 
-def test_a_wall_that_is_pushed_to_the_left_is_scored_as_its_mirror_image(
+def test_wall_pushed_to_the_left_is_scored_as_its_mirror_image(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It rocks at 9.9 kN where it was pushed; to the other side it would slide, at 14 = 0.7 · 20 kN."""
+    """In the direction of the push it rocks at 9.9 kN; to the other side it would slide, at 14 = 0.7 · 20 kN."""
     folder = write_folder(tmp_path / "walls", "left,,,,,,,,,,,,,R", "right,,,,,,,,,,,,,R")
     for name, side in (("left", -1), ("right", 1)):
         write_toml(leaning(side), folder / f"{name}.toml")
@@ -161,8 +159,8 @@ def test_a_wall_that_is_pushed_to_the_left_is_scored_as_its_mirror_image(
 
 
 @pytest.mark.parametrize("rest", [0.1, 0.0, -0.1])
-def test_cycles_to_the_left_are_compared_whatever_is_left_of_rest(rest: float, tmp_path: Path) -> None:
-    """Of a record that is turned round, an outcome that is positive along its first move is so already."""
+def test_cycles_to_the_left_are_compared_whatever_the_unloading_point(rest: float, tmp_path: Path) -> None:
+    """The record is mirrored; an outcome that is positive along its first move is not mirrored again."""
     path, points = [-2, rest, -4], [(0, 0), (-2, -4), (rest, 0), (-4, -5)]
     curve = "displacement_mm,force_kN\n" + "".join(f"{x},{y}\n" for x, y in points)
     folder = write_folder(tmp_path / "walls", "left,Cyclic,,,,,,,,,,,,R", curve=curve)
@@ -179,10 +177,8 @@ def test_cycles_to_the_left_are_compared_whatever_is_left_of_rest(rest: float, t
 @pytest.mark.parametrize(
     "drive", [{"force": [-5, 0], "at": 0.7}, {"displacement": [[0, -0.01, 0.01]]}, {"amplitudes": [-0.01]}]
 )
-def test_limit_analysis_pushes_to_the_side_that_a_wall_is_pushed_to_first(
-    drive: dict[str, Any], tmp_path: Path
-) -> None:
-    """By λ newtons, at the same height."""
+def test_limit_analysis_pushes_in_the_direction_of_the_first_move(drive: dict[str, Any], tmp_path: Path) -> None:
+    """With a drive of λ newtons at the same height."""
     folder = write_folder(tmp_path / "walls", "left,,,,,,,,,,,5,,R")
     tables = leaning(-1)
     tables["beam"]["drive"] = drive
@@ -193,7 +189,7 @@ def test_limit_analysis_pushes_to_the_side_that_a_wall_is_pushed_to_first(
 
 @pytest.mark.parametrize("features", [Features(), Features(driven=False)])
 def test_strength_is_in_newtons_whatever_the_force_of_a_drive(features: Features, tmp_path: Path) -> None:
-    """A drive of 1 kN made λ kilonewtons, which were scored as newtons, by all models but limit analysis."""
+    """A drive of 1 kN once gave λ in kilonewtons, scored as newtons, in all models except limit analysis."""
     folder = write_folder(tmp_path / "walls", "right,,,,,,,,,,,5,,R")
     tables = leaning(1)
     tables["beam"]["drive"] = {"force": [1000, 0], "at": 0.7}
@@ -206,7 +202,7 @@ def test_strength_is_in_newtons_whatever_the_force_of_a_drive(features: Features
     ("force", "live", "said"),
     [([1, -1], {}, "beam.drive.force: must be horizontal"), ([1, 0], {"live": {"kind": "lateral"}}, "load.live: must")],
 )
-def test_a_tested_wall_whose_multiplier_is_no_strength_is_refused(
+def test_wall_whose_multiplier_is_no_horizontal_strength_is_refused(
     force: list[float], live: dict[str, Any], said: str, tmp_path: Path
 ) -> None:
     folder = write_folder(tmp_path / "walls", "right,,,,,,,,,,,5,,R")
@@ -228,7 +224,7 @@ def test_a_tested_wall_whose_multiplier_is_no_strength_is_refused(
         (["--data", "/nowhere"], "/nowhere: must be a folder that holds tests.csv"),
     ],
 )
-def test_bad_arguments_are_one_line_and_nothing_is_written(
+def test_bad_arguments_give_one_line_and_no_files(
     arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert command(["validate", "--out", str(tmp_path / "out"), *arguments]) == 2
@@ -248,10 +244,10 @@ def test_bad_arguments_are_one_line_and_nothing_is_written(
         ("Vmax,+ [kN]", "Vmax,+ [mm]", "Vmax,+", "N, kN"),
     ],
 )
-def test_units_of_another_kind_are_one_line(
+def test_units_of_another_quantity_are_refused(
     usual: str, other: str, column: str, units: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A length in kN was read as one in km, and 39 mm as a load of 0.039 N."""
+    """A length in kN was once read as one in km, and 39 mm as a load of 0.039 N."""
     folder = write_folder(tmp_path / "walls", GRANITE, heads=HEADS.replace(usual, other))
     assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), *QUICK]) == 2
     unit = other.partition("[")[2].rstrip("]")
@@ -261,7 +257,7 @@ def test_units_of_another_kind_are_one_line(
 
 
 @pytest.mark.parametrize("row", [GRANITE.replace("Granite", "Marble"), GRANITE.replace(",150,", ",15 cm,")])
-def test_wall_that_cannot_be_made_is_one_line_and_nothing_is_written(
+def test_impossible_wall_gives_one_line_and_no_files(
     row: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = write_folder(tmp_path / "walls", row)
@@ -273,8 +269,8 @@ def test_wall_that_cannot_be_made_is_one_line_and_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_a_wall_that_is_refused_does_not_lose_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A row, a curve and a scene that are none; all are told of, on the page as well."""
+def test_refused_wall_does_not_stop_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """An invalid row, curve and scene are all reported, on the page as well."""
     marble = GRANITE.replace("WS.175", "marble").replace("Granite", "Marble")
     pushed = GRANITE.replace("WS.175", "scene")
     folder, out = write_folder(tmp_path / "walls", marble, GRANITE, pushed, SANDSTONE), tmp_path / "out"
@@ -299,15 +295,15 @@ def test_a_wall_that_is_refused_does_not_lose_the_others(tmp_path: Path, capsys:
     assert "## marble" not in page
 
 
-def test_curves_of_no_wall_are_told_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Else one with a slip in its name would be missed by nobody."""
+def test_curves_without_a_wall_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Otherwise a curve with a typing error in its name would go unnoticed."""
     folder = write_folder(tmp_path / "walls", GRANITE)
     (folder / "WS.175.csv").rename(folder / "WS 175.csv")
     assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), "--models", "rocking"]) == 0
-    assert "note: WS 175.csv is of no wall in the table\n" in capsys.readouterr().err
+    assert "note: WS 175.csv belongs to no wall in the table\n" in capsys.readouterr().err
 
 
-def test_a_picture_of_a_wall_whose_name_has_a_space_is_linked(tmp_path: Path) -> None:
+def test_picture_of_a_wall_with_a_space_in_its_name_is_linked(tmp_path: Path) -> None:
     folder, out = write_folder(tmp_path / "walls", GRANITE.replace("WS.175", "Wand (Süd)")), tmp_path / "out"
     arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]
     assert command(arguments) == 0
@@ -317,7 +313,7 @@ def test_a_picture_of_a_wall_whose_name_has_a_space_is_linked(tmp_path: Path) ->
     assert [path.name for path in out.glob("wall-*.png")] == ["wall-WS.175.png"]
 
 
-def test_model_that_does_not_answer_is_exit_code_3(walls: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_model_without_an_answer_gives_exit_code_3(walls: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     rung = LADDER["limit"]
     silent = replace(rung, model=replace(rung.model, solve=lambda *_: Outcome("", "", "undecided", message="none")))
     with patch.dict(LADDER, {"limit": silent}):

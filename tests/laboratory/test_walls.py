@@ -1,4 +1,4 @@
-"""Rows of tables become scenes: facts of the campaigns, and one line for what is wrong."""
+"""Table rows become scenes: facts of the campaigns, and a one-line error for invalid input."""
 
 import re
 import tomllib
@@ -56,7 +56,7 @@ def test_every_file_of_the_laboratory_is_package_data() -> None:
         ("SW.30.1", (1.0, 1.0), 10, 30e3, ("F", "R", "SL")),
     ],
 )
-def test_rows_become_the_walls_of_the_crack_maps(
+def test_rows_match_the_walls_of_the_crack_maps(
     name: str, size: tuple[float, float], courses: int, pressed: float, modes: tuple[str, ...]
 ) -> None:
     wall = shipped_walls()[name]
@@ -81,7 +81,7 @@ def test_granite_starts_with_whole_blocks_and_sandstone_with_half_ones() -> None
         assert own.sum() == lowest
 
 
-def test_scene_has_the_features_that_it_is_asked_for_and_no_others() -> None:
+def test_scene_has_only_the_requested_features() -> None:
     wall = shipped_walls()["WS.250"]
     plain, full = scene_of(wall, Features()), scene_of(wall, ALL)
     joint, rich = plain.joint_materials[0], full.joint_materials[0]
@@ -95,8 +95,8 @@ def test_scene_has_the_features_that_it_is_asked_for_and_no_others() -> None:
     assert plain.beam.drive.path == pytest.approx((0.04311,))
 
 
-def test_joints_get_as_stiff_as_walls_were_measured_to_be_under_their_vertical_load() -> None:
-    """Through Epc / h_b within a tenth; without closure that stiffness itself, in shear 1 / 2.4 of it."""
+def test_joint_stiffness_under_vertical_load_matches_the_measured_modulus() -> None:
+    """Equals Epc / h_b within 12 %; without closure that stiffness is constant, and in shear 1 / 2.4 of it."""
     for stone, height in (("sandstone", 0.1), ("granite", 0.15)):
         start, growth = STONES[stone].stiffness(height, deformable=False)
         for pressure, modulus in STONES[stone].moduli.items():
@@ -107,7 +107,7 @@ def test_joints_get_as_stiff_as_walls_were_measured_to_be_under_their_vertical_l
     assert given.shear == pytest.approx(given.normal / 2.4)
 
 
-def test_deformable_blocks_and_their_joints_are_together_as_stiff_as_the_wall() -> None:
+def test_deformable_blocks_and_joints_in_series_match_the_measured_modulus() -> None:
     for stone, height in (("sandstone", 0.1), ("granite", 0.15)):
         start, growth = STONES[stone].stiffness(height, deformable=True)
         for pressure, modulus in STONES[stone].moduli.items():
@@ -115,20 +115,20 @@ def test_deformable_blocks_and_their_joints_are_together_as_stiff_as_the_wall() 
             assert 1 / (1 / joint / height + 1 / STONES[stone].young) == pytest.approx(modulus, rel=0.12)
 
 
-def test_unnamed_load_is_what_is_left_of_ntot(tmp_path: Path) -> None:
-    """1.2 × 1 × .2 m of 20 kN/m³ are 4.8 kN."""
+def test_load_without_a_name_is_ntot_less_the_weight(tmp_path: Path) -> None:
+    """1.2 × 1 × 0.2 m at 20 kN/m³ weigh 4.8 kN."""
     assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", "wall"))) == pytest.approx(175e3)
 
 
-def test_a_name_that_is_far_from_the_stress_tells_no_load(tmp_path: Path) -> None:
-    """0.875 MPa on 1 m × 0.2 m are 175 kN, of a wall called 175 as of the third one."""
+def test_number_in_a_name_far_from_the_stress_is_no_load(tmp_path: Path) -> None:
+    """0.875 MPa on 1 m × 0.2 m is 175 kN, whether the wall is called 175 or is the third one."""
     for name in ("WS.175", "Wall-3"):
         row = f"{GRANITE.replace('WS.175', name).replace('179.8', '')},0.875"
         wall = read_folder(write_folder(tmp_path / name, row, heads=f'{HEADS},"σ0,pc [MPa]"'))[0]
         assert vertical_load(wall) == pytest.approx(175e3)
 
 
-def test_sandstone_is_as_high_as_the_actuator_where_that_is_a_course_more(tmp_path: Path) -> None:
+def test_sandstone_reaches_the_actuator_if_that_takes_one_more_course(tmp_path: Path) -> None:
     for height, courses in (("1000", 10), ("1200", 9)):
         row = SANDSTONE.replace(",1000,100,", f",{height},100,")
         assert row != SANDSTONE or height == "1000"
@@ -139,32 +139,32 @@ def test_sandstone_is_as_high_as_the_actuator_where_that_is_a_course_more(tmp_pa
 
 
 @pytest.mark.parametrize("name", ["WS.175", "WS2.175", "WS-175", "WS 175", "WS.175.3"])
-def test_load_is_read_from_names_with_and_without_numbers_beside_it(tmp_path: Path, name: str) -> None:
+def test_load_is_read_from_names_with_and_without_other_numbers(tmp_path: Path, name: str) -> None:
     assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", name).replace("179.8", ""))) == 175e3
 
 
-def test_further_columns_other_names_of_the_table_and_missing_entries_are_taken(tmp_path: Path) -> None:
+def test_extra_columns_other_table_names_and_missing_entries_are_accepted(tmp_path: Path) -> None:
     heads = "Note," + HEADS + ",More"
     wall = read_folder(write_folder(tmp_path, f"x,{SANDSTONE}", heads=heads, table="hidden-walls.csv"))[0]
     assert wall.peak == 49.2e3
     assert scene_of(wall, ALL).title == "SW.100.1"
     bare = read_folder(write_folder(tmp_path / "bare", SANDSTONE.replace(",49.2,,R", ",,,")))[0]
-    assert bare.peak == 61e3  # that of the curve
+    assert bare.peak == 61e3  # the peak of the curve
     assert bare.modes == ()
 
 
-def test_words_of_a_report_are_parted_and_those_that_are_no_mode_are_kept(tmp_path: Path) -> None:
+def test_report_words_are_split_and_unknown_ones_kept(tmp_path: Path) -> None:
     assert one(tmp_path, GRANITE[:-1] + "R + tc / falls").modes == ("R", "TC", "FALLS")
 
 
-def test_wall_that_was_pushed_to_the_negative_side_is_turned_round(tmp_path: Path) -> None:
+def test_wall_pushed_to_the_negative_side_is_mirrored(tmp_path: Path) -> None:
     curve = "displacement_mm,force_kN\n0,0\n-1,-30\n-10,-61\n"
     wall = read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))[0]
     assert wall.curve.tolist() == [[0, 0], [1e-3, 30e3], [0.01, 61e3]]
     assert (wall.path, wall.peaks) == ((0.01,), (61e3,))
 
 
-def test_wall_without_a_curve_is_pushed_anyway(tmp_path: Path) -> None:
+def test_wall_without_a_curve_has_a_default_push(tmp_path: Path) -> None:
     wall = one(tmp_path)
     (tmp_path / "WS.175.csv").unlink()
     again = read_folder(tmp_path)[0]
@@ -176,7 +176,7 @@ def test_wall_without_a_curve_is_pushed_anyway(tmp_path: Path) -> None:
     assert beam.drive.path == pytest.approx((0.03 * 1.325,))
 
 
-def test_scene_of_its_own_is_taken_instead_of_the_row(tmp_path: Path) -> None:
+def test_own_scene_file_replaces_the_row(tmp_path: Path) -> None:
     wall = shipped_walls()["J4D"]
     assert wall.scene_file is not None
     row = "other,Monotonic,Mortar,Clay brick,,,,,,,,40,,F"
@@ -194,8 +194,8 @@ RUNGS = [rung for rung in LADDER.values() if not rung.features.deformable]
 
 
 @pytest.mark.parametrize("rung", RUNGS, ids=lambda rung: rung.name)
-def test_a_row_written_as_a_scene_file_is_predicted_as_the_row(rung: Rung, tmp_path: Path) -> None:
-    """Joints that close were as stiff as without pressure where they were not to close."""
+def test_row_written_as_a_scene_file_gives_the_same_scene(rung: Rung, tmp_path: Path) -> None:
+    """Closing joints once had the stiffness at zero pressure in models without closure."""
     wall = one(tmp_path)
     file = write_toml(_tables(wall, ALL), tmp_path / "WS.175.toml")
     row, own = scene_of(wall, rung.features), scene_of(replace(wall, scene_file=file), rung.features)
@@ -206,8 +206,8 @@ def test_a_row_written_as_a_scene_file_is_predicted_as_the_row(rung: Rung, tmp_p
 
 
 @pytest.mark.parametrize("rung", RUNGS, ids=lambda rung: rung.name)
-def test_joints_of_every_material_have_the_features_that_are_asked_for(rung: Rung, tmp_path: Path) -> None:
-    """`limit` crushed the toe of a wall whose lowest bed is a named material, as `limit-crushing` does."""
+def test_joints_of_every_material_have_the_requested_features(rung: Rung, tmp_path: Path) -> None:
+    """`limit` once crushed the toe of a wall whose lowest bed is a named material, as `limit-crushing` does."""
     wall = one(tmp_path)
     tables = _tables(wall, ALL)
     tables["joints"] = {"foot": tables["joint"] | {"peak_closure": 1e-4, "cap_shear": 4.0}}
@@ -220,8 +220,8 @@ def test_joints_of_every_material_have_the_features_that_are_asked_for(rung: Run
     assert (foot.closure is not None) == rung.features.closes
 
 
-def test_joints_are_as_stiff_as_under_the_load_on_stones_of_their_own_thickness(tmp_path: Path) -> None:
-    """Whichever key has it."""
+def test_joint_stiffness_under_load_uses_the_thickness_of_the_stones(tmp_path: Path) -> None:
+    """The thickness may be given for the block or for the wall."""
     wall, rung = one(tmp_path), next(each for each in RUNGS if not each.features.closes and each.base)
     tables = _tables(wall, ALL)
     own = tables["block"] | {"thickness": tables["wall"]["thickness"]}
@@ -233,8 +233,8 @@ def test_joints_are_as_stiff_as_under_the_load_on_stones_of_their_own_thickness(
 
 
 @pytest.mark.parametrize("name", [name for name, rung in LADDER.items() if rung.base == "dem-dynamic"])
-def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_left_out(name: str) -> None:
-    """They read it, as a model of the package does that is told to; pages said of all that they did not."""
+def test_only_small_displacement_models_ignore_the_line_of_the_load(name: str) -> None:
+    """Pages once said that all models ignore it; those with finite displacements use it."""
     rung = LADDER[name]
     tables = _tables(shipped_walls()["WS.250"], rung.features)
     tables["wall"]["height"] = 0.3
@@ -244,8 +244,8 @@ def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_l
 
 
 @pytest.mark.parametrize(("load", "is_crushed"), [(-2e5, False), (-1.05e7, True)])
-def test_only_what_has_been_crushed_is_said_to_bear_bending_on_its_points(load: float, is_crushed: bool) -> None:
-    """Corners that have met other blocks sit as they met: of walls that are nowhere crushed it was said as well."""
+def test_note_on_bending_of_crushed_joints_needs_crushing(load: float, is_crushed: bool) -> None:
+    """Corners that met other blocks also have a plastic closure; the note once appeared for uncrushed walls."""
     tables = _tables(shipped_walls()["SW.200.1"], LADDER["rigid-splitting"].features)
     tables["wall"]["height"] = 0.5
     tables["beam"] |= {"height": 0.2, "force": [0, load], "drive": {"displacement": [3e-3, 0], "at": 0.6}}
@@ -253,7 +253,7 @@ def test_only_what_has_been_crushed_is_said_to_bear_bending_on_its_points(load: 
     assert ("crushed joints" in outcome.message) == is_crushed
 
 
-def test_unit_in_the_head_of_a_column_counts(tmp_path: Path) -> None:
+def test_unit_in_a_column_head_is_used(tmp_path: Path) -> None:
     heads = HEADS.replace("L [mm]", "L [m]").replace("Ntot [kN]", "Ntot")
     wall = read_folder(write_folder(tmp_path, GRANITE.replace(",1000,", ",1.0,"), heads=heads))[0]
     assert scene_of(wall, Features()).blocks.extent()[1][0] >= 1.0
@@ -274,18 +274,18 @@ def test_repeated_cycles_are_left_out_and_sides_alternate() -> None:
 
 
 @pytest.mark.parametrize(("after", "home"), [((0.1,), (0.0,)), ((2, -2, 1), (0.0,)), ((-1, -1.5), (-1,)), ((), ())])
-def test_the_last_cycle_is_let_go_back_as_far_as_to_rest(after: tuple[float, ...], home: tuple[float, ...]) -> None:
-    """Where the record goes on: without it the largest loop stays open, and its work is not compared."""
+def test_last_cycle_is_unloaded_to_rest_at_most(after: tuple[float, ...], home: tuple[float, ...]) -> None:
+    """If the record goes on; otherwise the largest loop would stay open and its work could not be compared."""
     assert growing([1, -1, 2, -2, *after]) == (1, -1, 2, -2, *home)
 
 
-def test_one_that_is_pushed_again_to_the_same_side_goes_there() -> None:
-    """To one side and back a little, ever farther; and once before it is pushed to the other side as well."""
+def test_repeated_pushes_to_one_side_are_kept() -> None:
+    """Increasing pushes to one side with partial unloading, and one push before both sides alternate."""
     assert growing([2, 0.2, 5, 1, 10, 2, 25, 4]) == (2, 0.2, 5, 1, 10, 2, 25, 4)
     assert growing([2, 0, 5, -5, 10, -10]) == (2, 0, 5, -5, 10, -10)
 
 
-def test_cyclic_walls_are_pushed_to_both_sides_and_ever_farther() -> None:
+def test_cyclic_walls_are_pushed_to_alternating_sides() -> None:
     for name in ("WS1.100", "WS1.175", "WS2.100"):
         wall = shipped_walls()[name]
         assert wall.is_cyclic
@@ -318,7 +318,7 @@ def test_cyclic_walls_are_pushed_to_both_sides_and_ever_farther() -> None:
         (GRANITE.replace(",200,179.8", ",350,179.8"), "wall.length = 1.0: must be a whole number of half blocks"),
     ],
 )
-def test_row_that_describes_no_wall_is_refused_by_file_and_line(tmp_path: Path, row: str, said: str) -> None:
+def test_invalid_row_is_refused_with_file_and_line(tmp_path: Path, row: str, said: str) -> None:
     with pytest.raises(SceneError) as refused:
         scene_of(one(tmp_path, row), Features())
     assert said in str(refused.value)
@@ -344,7 +344,7 @@ def test_row_that_describes_no_wall_is_refused_by_file_and_line(tmp_path: Path, 
         (['"WS.175'], HEADS, "tests.csv, line 2: is not a line of a CSV file"),
     ],
 )
-def test_table_that_is_none_is_refused(tmp_path: Path, rows: list[str], heads: str, said: str) -> None:
+def test_invalid_table_is_refused(tmp_path: Path, rows: list[str], heads: str, said: str) -> None:
     folder = tmp_path / "walls"
     folder.mkdir()
     (folder / "tests.csv").write_text("\n".join([heads, *rows]) + "\n", encoding="utf-8")
@@ -371,7 +371,7 @@ def test_table_that_is_none_is_refused(tmp_path: Path, rows: list[str], heads: s
         ("displacement_mm,force_kN\n0,0\n1,-2\n", "WS.175.csv: has its forces against its displacements"),
     ],
 )
-def test_curve_that_is_none_is_refused(tmp_path: Path, curve: str, said: str) -> None:
+def test_invalid_curve_is_refused(tmp_path: Path, curve: str, said: str) -> None:
     with pytest.raises(SceneError) as refused:
         read_folder(write_folder(tmp_path, GRANITE, curve=curve))
     assert said in str(refused.value)
@@ -388,15 +388,15 @@ def test_curve_that_is_none_is_refused(tmp_path: Path, curve: str, said: str) ->
         lambda text: "# measured; in, 2005\n\n" + text.replace("\n1.5", "\n# a pause\n\n1.5") + "# end\n",
     ],
 )
-def test_a_curve_is_the_same_however_a_spreadsheet_writes_it(change: Callable[[str], str], tmp_path: Path) -> None:
+def test_curve_does_not_depend_on_the_spreadsheet_format(change: Callable[[str], str], tmp_path: Path) -> None:
     text = "displacement_mm,force_kN\n0,0\n1.5,30.5\nNaN,NaN\n-1.5,-20\n"
     curves = [read_folder(write_folder(tmp_path, GRANITE, curve=each))[0].curve for each in (text, change(text))]
     assert np.array_equal(curves[0], curves[1], equal_nan=True)
     assert curves[0][1] == pytest.approx([1.5e-3, 30.5e3])
 
 
-def test_a_table_is_the_same_however_a_spreadsheet_writes_it(tmp_path: Path) -> None:
-    """Heads have commas of their own, which need no quotes beside semicolons."""
+def test_table_does_not_depend_on_the_spreadsheet_format(tmp_path: Path) -> None:
+    """Heads contain commas, which need no quotes if semicolons separate the columns."""
     heads, row = HEADS.replace('"', "").replace("Vmax,", "Vmax|"), f"{GRANITE[:-1]}R/TC"
     write_folder(tmp_path, row)
     (wall,) = read_folder(tmp_path)
@@ -412,8 +412,8 @@ def test_a_table_is_the_same_however_a_spreadsheet_writes_it(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("factor", [1e3, 1e-3])
-def test_a_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_path: Path) -> None:
-    """Of newtons under a head of kilonewtons nothing was said."""
+def test_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_path: Path) -> None:
+    """Newtons under a head in kilonewtons were once accepted without a message."""
     curve = "displacement_mm,force_kN\n0,0\n" + f"10,{61 * factor:g}\n"
     with pytest.raises(SceneError, match=r"WS\.175\.csv: has a largest force of .* one of 6\.1e\+04 N; are their"):
         read_folder(write_folder(tmp_path, GRANITE, curve=curve))
@@ -428,8 +428,8 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("content", BROKEN.values(), ids=BROKEN)
-def test_a_curve_that_cannot_be_read_does_not_lose_other_walls(content: bytes, tmp_path: Path) -> None:
-    """The table was looked for in all of every file, and one that is damaged was the end of them all."""
+def test_unreadable_curve_does_not_stop_other_walls(content: bytes, tmp_path: Path) -> None:
+    """The search for the table read every file completely, and once failed for all walls on one damaged file."""
     folder = write_folder(tmp_path, SANDSTONE, GRANITE)
     (folder / "SW.100.1.csv").write_bytes(content)
     refused = list[SceneError]()
@@ -437,15 +437,15 @@ def test_a_curve_that_cannot_be_read_does_not_lose_other_walls(content: bytes, t
     assert [error.key.split(",")[0] for error in refused] == ["SW.100.1.csv"]
 
 
-def test_a_table_that_cannot_be_read_is_told_of(tmp_path: Path) -> None:
+def test_unreadable_table_is_reported(tmp_path: Path) -> None:
     folder = write_folder(tmp_path, GRANITE)
     (folder / "tests.csv").write_bytes((folder / "tests.csv").read_text(encoding="utf-8").encode("utf-16"))
     with pytest.raises(SceneError, match=r"tests\.csv: is not a table: it is not UTF-8 text"):
         read_folder(folder)
 
 
-def test_what_systems_leave_in_folders_is_passed_over(tmp_path: Path) -> None:
-    """The hidden companions of a Macintosh, of which one was refused as no text, a folder, and a link to nowhere."""
+def test_system_files_in_folders_are_skipped(tmp_path: Path) -> None:
+    """Hidden companion files of macOS, once refused as unreadable text, a folder, and a dangling link."""
     folder = write_folder(tmp_path, GRANITE)
     for name in ("._tests.csv", "._WS.175.csv"):
         (folder / name).write_bytes(b"\x00\x05\x16\x07\xff")
@@ -455,8 +455,8 @@ def test_what_systems_leave_in_folders_is_passed_over(tmp_path: Path) -> None:
     assert unused(folder) == []
 
 
-def test_the_case_of_an_ending_does_not_matter(tmp_path: Path) -> None:
-    """WS.175.CSV was passed over without a word, and the wall pushed as one without a record."""
+def test_file_extension_is_case_insensitive(tmp_path: Path) -> None:
+    """WS.175.CSV was once skipped without a message, and the wall treated as one without a record."""
     folder = write_folder(tmp_path, GRANITE)
     (folder / "WS.175.csv").rename(folder / "WS.175.CSV")
     (folder / "WS.250.csv").write_text(CURVE)
@@ -467,19 +467,17 @@ def test_the_case_of_an_ending_does_not_matter(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("word", "is_cyclic"), [("Quasi-static cyclic", True), ("CYCLIC", True), ("monotone", False), ("–", False)]
 )
-def test_the_word_for_how_a_wall_was_pushed_may_be_part_of_a_longer_one(
-    word: str, is_cyclic: bool, tmp_path: Path
-) -> None:
-    """A wall that was pushed to and fro was predicted to one side where its table began otherwise."""
+def test_loading_type_may_be_part_of_a_longer_word(word: str, is_cyclic: bool, tmp_path: Path) -> None:
+    """A cyclic wall was once predicted to one side only if the table entry began with another word."""
     assert one(tmp_path, GRANITE.replace("Monotonic", word)).is_cyclic == is_cyclic
 
 
-def test_another_word_for_how_a_wall_was_pushed_is_refused(tmp_path: Path) -> None:
+def test_unknown_loading_type_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r'line 2: Cyclic / Monotonic = .C.: must be "Cyclic" or "Monotonic"'):
         one(tmp_path, GRANITE.replace("Monotonic", "C"))
 
 
-def test_folder_that_is_none_or_holds_two_tables_is_refused(tmp_path: Path) -> None:
+def test_missing_folder_or_two_tables_are_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="must be a folder that holds tests.csv"):
         read_folder(tmp_path / "nowhere")
     write_folder(tmp_path, GRANITE)
@@ -489,24 +487,24 @@ def test_folder_that_is_none_or_holds_two_tables_is_refused(tmp_path: Path) -> N
 
 
 def with_column(folder: Path, head: str, cell: str) -> Path:
-    """A folder with the granite wall, whose table has one column more."""
+    """A folder with the granite wall and one additional column in its table."""
     write_folder(folder, f"{GRANITE},{cell}", heads=f"{HEADS},{head}")
     return folder
 
 
-def test_two_columns_of_one_name_that_differ_are_refused(tmp_path: Path) -> None:
-    """The last one counted, whatever the other had."""
+def test_conflicting_columns_of_one_name_are_refused(tmp_path: Path) -> None:
+    """Once the last one counted, whatever the other contained."""
     with pytest.raises(SceneError, match=r"tests.csv, line 2: L = '1.5 m': is in another column as well, as 1000 mm;"):
         read_folder(with_column(tmp_path, "L [m]", "1.5"))
 
 
 @pytest.mark.parametrize(("head", "cell"), [("L [m]", ""), ("L [mm]", "1000")])
-def test_a_column_of_the_same_name_that_is_empty_or_alike_changes_nothing(head: str, cell: str, tmp_path: Path) -> None:
+def test_empty_or_equal_duplicate_column_changes_nothing(head: str, cell: str, tmp_path: Path) -> None:
     (wall,) = read_folder(with_column(tmp_path, head, cell))
     assert wall.row.number("L") == 1.0
 
 
-def test_scene_of_its_own_without_a_drive_is_refused(tmp_path: Path) -> None:
+def test_own_scene_without_a_drive_is_refused(tmp_path: Path) -> None:
     folder = write_folder(tmp_path, GRANITE)
     (folder / "WS.175.toml").write_text("[wall]\n")
     with pytest.raises(SceneError, match="WS.175.toml: beam.drive: is missing"):
@@ -516,22 +514,22 @@ def test_scene_of_its_own_without_a_drive_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "load"), [("WS.175", 175e3), ("Wall 3", 185.2e3), ("WS-1.250", 185.2e3), ("A-150", 185.2e3)]
 )
-def test_a_number_in_a_name_is_a_load_where_the_table_agrees(tmp_path: Path, name: str, load: float) -> None:
-    """Else it is what Ntot leaves of the weight, 20 kN/m³ of 0.24 m³."""
+def test_number_in_a_name_is_a_load_if_the_table_agrees(tmp_path: Path, name: str, load: float) -> None:
+    """Otherwise the load is Ntot less the weight, 20 kN/m³ times 0.24 m³."""
     row = GRANITE.replace("WS.175", name).replace("179.8", "190")
     assert vertical_load(one(tmp_path, row)) == pytest.approx(load, rel=1e-9)
 
 
 @pytest.mark.parametrize("content", [b"none", b"\x89PNG\r\n\x1a\nhalf", b""])
-def test_cracks_that_are_no_picture_are_refused(content: bytes, tmp_path: Path) -> None:
-    """Of a damaged one the first bytes were looked at alone; it ended in a traceback when all walls were predicted."""
+def test_invalid_crack_picture_is_refused(content: bytes, tmp_path: Path) -> None:
+    """Only the first bytes were once checked; a damaged picture caused a traceback after all predictions."""
     folder = write_folder(tmp_path / "walls", GRANITE)
     (folder / "WS.175-cracks.png").write_bytes(content)
     with pytest.raises(SceneError, match=r"WS\.175-cracks\.png: is no PNG picture"):
         read_folder(folder)
 
 
-def test_a_scene_that_cannot_be_made_is_refused_by_its_wall(tmp_path: Path) -> None:
+def test_impossible_scene_is_refused_with_its_wall(tmp_path: Path) -> None:
     walls = read_folder(
         write_folder(tmp_path / "walls", GRANITE, SANDSTONE.replace(",1000,200,1000", ",1050,200,1000"))
     )
@@ -539,12 +537,12 @@ def test_a_scene_that_cannot_be_made_is_refused_by_its_wall(tmp_path: Path) -> N
         scenes_of(walls, list(LADDER.values()))
 
 
-def test_walls_of_another_load_than_that_of_a_few_are_scored(tmp_path: Path) -> None:
+def test_walls_with_an_uncommon_load_are_scored(tmp_path: Path) -> None:
     walls = [one(tmp_path / name, SANDSTONE.replace("SW.100.1", name)) for name in ("SW.30.3", "SW.300.1", "SW.30")]
     assert [wall.is_scored for wall in walls] == [False, True, False]
 
 
-def test_a_curve_to_the_negative_side_may_begin_with_noise(tmp_path: Path) -> None:
+def test_curve_to_the_negative_side_may_start_with_noise(tmp_path: Path) -> None:
     curve = "displacement_mm,force_kN\n0.01,0\n-1,-30\n-10,-61\n"
     wall = read_folder(write_folder(tmp_path / "walls", GRANITE, curve=curve))[0]
     assert wall.curve[-1] == pytest.approx([0.01, 61e3])
@@ -552,8 +550,8 @@ def test_a_curve_to_the_negative_side_may_begin_with_noise(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("kind", ["Monotonic", "Cyclic", ""])
 @pytest.mark.parametrize("passing", [0.3, 1.0, 3.0])
-def test_a_wall_is_read_as_its_mirror_image(passing: float, kind: str, tmp_path: Path) -> None:
-    """12 mm to one side under 61 kN, after some to the other: with that beyond a twentieth it depended on the side."""
+def test_reading_a_wall_does_not_depend_on_its_side(passing: float, kind: str, tmp_path: Path) -> None:
+    """12 mm to one side under 61 kN after a little to the other; beyond 1/20 the result once depended on the side."""
     points = [(0, 0), (passing / 2, 10), (passing, 12), (0, -1), (-2, -40), (-10, -61), (-12, -45)]
     row, walls = GRANITE.replace("Monotonic", kind).replace(",61,", ",,"), []
     for side in (1, -1):
@@ -568,15 +566,15 @@ def test_a_wall_is_read_as_its_mirror_image(passing: float, kind: str, tmp_path:
 
 
 @pytest.mark.parametrize("kind", ["Monotonic", "Cyclic"])
-def test_a_wall_that_was_pushed_back_to_where_it_stood_was_not_pushed_to_both_sides(kind: str, tmp_path: Path) -> None:
-    """A wall that slides takes as much on its way back; of one to one side the largest force there counts."""
+def test_push_back_to_the_start_is_no_push_to_the_other_side(kind: str, tmp_path: Path) -> None:
+    """A sliding wall resists equally on its way back; for one side only, the largest force there counts."""
     curve = "displacement_mm,force_kN\n0,0\n1,50\n10,61\n9,-55\n0,-60\n"
     row = GRANITE.replace("Monotonic", kind).replace(",61,", ",,")
     assert read_folder(write_folder(tmp_path, row, curve=curve))[0].peaks == (61e3,)
 
 
-def test_the_force_of_the_other_side_may_have_its_sign(tmp_path: Path) -> None:
-    """Tables give ``Vmax,-`` as a magnitude or as a force; that of the first side is above zero."""
+def test_force_of_the_other_side_may_be_signed(tmp_path: Path) -> None:
+    """Tables give ``Vmax,-`` as a magnitude or as a signed force; the force of the first side is positive."""
     row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,,", ",61,-43,")
     assert one(tmp_path, row).peaks == (61e3, 43e3)
     with pytest.raises(SceneError, match=re.escape("Vmax,+ = '-61': must be a number above 0")):

@@ -1,4 +1,4 @@
-"""The search over parts of a wall: what it may leave out, what it proves, and what it finds."""
+"""Search for certificates over macro-blocks: gluing, neighbourhoods, proofs in the full wall, limits and interrupts."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from runningbond.compare import published_scene
 from runningbond.limit import equilibrium, limit, limit_nonassociated
 from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import Certificate, certify
-from runningbond.limit.coarse import POINTS, CoarseSearch, finest, is_worth
+from runningbond.limit.coarse import COARSE_POINTS, CoarseSearch, finest, is_worth
 from runningbond.limit.descent import Descent, jump_pattern
 from runningbond.limit.equilibrium import Equilibrium
 from runningbond.limit.force_program import ForceSolution, coulomb, solve_forces
@@ -19,7 +19,7 @@ from tests.at_length import at_length
 from tests.limit.test_search import rubble
 
 CERTIFIED = {"wall-w2": 0.557416, "wall-w4": 0.263736, "panel-04": 0.0892857}
-"""Lowest loads that the search over the wall itself certifies, as benchmarks/limit_search.py prints them."""
+"""Lowest loads certified by the search over the full wall, as benchmarks/limit_search.py prints them."""
 
 
 def ordered(scene: Scene) -> tuple[Equilibrium, Array]:
@@ -40,7 +40,7 @@ def found_in_w2() -> CoarseSearch:
 
 
 @pytest.mark.parametrize("name", ["wall-w4", "panel-04", *at_length("wall-w2")])
-def test_parts_hold_the_lowest_certificate_of_small_walls(name: str) -> None:
+def test_coarse_search_finds_lowest_load_of_full_search(name: str) -> None:
     scene = published_scene(name)
     looked = coarse(scene)
     looked.run()
@@ -48,8 +48,8 @@ def test_parts_hold_the_lowest_certificate_of_small_walls(name: str) -> None:
     assert looked.found.highest * looked.system.live_unit <= (limit(scene).upper or 0.0) * (1 + 1e-5)
 
 
-def test_all_that_is_found_is_proved_in_the_wall(found_in_w2: CoarseSearch) -> None:
-    """Exactly, where the search has it from interior points."""
+def test_certificates_are_proved_in_full_wall(found_in_w2: CoarseSearch) -> None:
+    """Loads agree with exact certificates to 1e-5 where the search has them from interior points."""
     assert len(found_in_w2.found.certificates) > 2
     for each in found_in_w2.found.certificates:
         exact = certify(found_in_w2.system, each.motion)
@@ -59,10 +59,8 @@ def test_all_that_is_found_is_proved_in_the_wall(found_in_w2: CoarseSearch) -> N
 
 
 @pytest.mark.parametrize("freedoms", [12, 30, 60])
-def test_loads_that_drive_a_mechanism_in_the_wall_do_so_in_the_glued_wall(
-    freedoms: int, found_in_w2: CoarseSearch
-) -> None:
-    """What is glued bears anything, so that the interval is not smaller there; forces that are none there are none."""
+def test_glued_wall_has_wider_load_interval(freedoms: int, found_in_w2: CoarseSearch) -> None:
+    """Glued joints carry any force, so the interval of loads on a mechanism contains that of the full wall."""
     system, place = found_in_w2.system, found_in_w2.place
     jumps = np.abs(system.jumps(solve_forces(system, coulomb(system.strength)).motion)).max(axis=0)
     glued = finest(system, place, jumps / jumps.max(), freedoms)
@@ -80,7 +78,7 @@ def test_loads_that_drive_a_mechanism_in_the_wall_do_so_in_the_glued_wall(
     assert proved or freedoms < 60
 
 
-def test_as_little_is_glued_as_leaves_so_many_freedoms(found_in_w2: CoarseSearch) -> None:
+def test_finest_glues_as_little_as_freedoms_allow(found_in_w2: CoarseSearch) -> None:
     system, place = found_in_w2.system, found_in_w2.place
     jumps, last = 10.0 ** np.random.default_rng(0).uniform(-4.5, 0.0, len(system.points)), 0
     for freedoms in (0, 30, 60, 120, 1000):
@@ -91,8 +89,8 @@ def test_as_little_is_glued_as_leaves_so_many_freedoms(found_in_w2: CoarseSearch
     assert last == system.freedoms
 
 
-def test_a_certificate_is_one_of_its_neighbourhood(found_in_w2: CoarseSearch) -> None:
-    """It moves as in the wall, and its forces balance what is left; a larger neighbourhood has more freedoms."""
+def test_certificate_holds_in_its_neighbourhood(found_in_w2: CoarseSearch) -> None:
+    """The motion is unchanged, the forces balance what is left, and larger neighbourhoods have more freedoms."""
     system, place, best = found_in_w2.system, found_in_w2.place, found_in_w2.found.best
     assert best is not None
     largest, last = np.abs(best.motion).max(), 0
@@ -108,7 +106,7 @@ def test_a_certificate_is_one_of_its_neighbourhood(found_in_w2: CoarseSearch) ->
 
 
 def unbalanced(system: Equilibrium, certificate: Certificate) -> Array:
-    """What the forces of a certificate at its least load leave unbalanced."""
+    """Residual of the equilibrium equations for the forces of a certificate at its smallest load."""
     forces = certificate.least
     normal = system.strength.tension - forces.pressure
     balance = system.opening @ normal + system.slip @ forces.tangential
@@ -116,8 +114,8 @@ def unbalanced(system: Equilibrium, certificate: Certificate) -> Array:
 
 
 @pytest.mark.parametrize("seed", [3, *at_length(10, 11)])
-def test_a_wall_and_its_mirrored_shuffled_and_scaled_images_are_searched_alike(seed: int) -> None:
-    """By as many programs, and by two workers too, for glued equations have lost their last bits."""
+def test_coarse_search_ignores_mirroring_order_and_scale(seed: int) -> None:
+    """Also with two workers. The numbers of programs agree because glued equations are rounded."""
     images = (rubble(seed), rubble(seed, mirrored=True, shuffled=1), rubble(seed, shuffled=2, size=2.7))
     looked = [coarse(scene, most=40) for scene in images] + [coarse(images[0], most=40, workers=2)]
     loads = []
@@ -128,9 +126,9 @@ def test_a_wall_and_its_mirrored_shuffled_and_scaled_images_are_searched_alike(s
     assert [each.found.programs for each in looked[1:]] == [looked[0].found.programs] * 3
 
 
-@pytest.mark.parametrize(("points", "parts"), [(0, True), (POINTS, False)])
-def test_larger_walls_are_searched_in_parts_first(points: int, parts: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the starts and programs that are asked for."""
+@pytest.mark.parametrize(("points", "parts"), [(0, True), (COARSE_POINTS, False)])
+def test_large_walls_use_coarse_search(points: int, parts: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the requested numbers of starts and programs."""
     looked: list[CoarseSearch] = []
     run = CoarseSearch.run
 
@@ -139,7 +137,7 @@ def test_larger_walls_are_searched_in_parts_first(points: int, parts: bool, monk
         return run(self)
 
     monkeypatch.setattr(CoarseSearch, "run", seen)
-    monkeypatch.setattr("runningbond.limit.nonassociated.POINTS", points)
+    monkeypatch.setattr("runningbond.limit.nonassociated.COARSE_POINTS", points)
     outcome = limit_nonassociated(published_scene("wall-w2"), starts=1)
     assert outcome.lower is not None
     assert "from 1 starts" in outcome.message
@@ -147,21 +145,21 @@ def test_larger_walls_are_searched_in_parts_first(points: int, parts: bool, monk
 
 
 @pytest.mark.long
-def test_a_search_ends_once_it_has_cost_so_much() -> None:
-    """What programs over parts cost is counted by their freedoms: thousands of them as a few hundred of the wall's."""
+def test_coarse_search_ends_at_cost_limit() -> None:
+    """Programs over parts are weighted by their freedoms: thousands cost as much as a few hundred full ones."""
     scene = published_scene("wall-w2")
     usual, short, shortest = coarse(scene), coarse(scene, most=20), coarse(scene, most=1)
     for each in (usual, short, shortest):
         each.run()
     assert shortest.found.programs == 1
-    assert 0 < short.found.cost < 20 + 40  # what was begun is ended
+    assert 0 < short.found.cost < 20 + 40  # the current search is completed
     assert short.found.cost < usual.found.cost < 0.5 * usual.found.programs
     assert usual.found.lowest <= short.found.lowest
 
 
-def test_an_interrupt_keeps_what_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupt_keeps_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
     looks: list[int] = []
-    look = CoarseSearch._look
+    look = CoarseSearch._search_glued
 
     def interrupted(self: CoarseSearch, *arguments: object) -> None:
         look(self, *arguments)  # type: ignore[arg-type]
@@ -169,15 +167,15 @@ def test_an_interrupt_keeps_what_was_found(monkeypatch: pytest.MonkeyPatch) -> N
         if looks[-1]:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(CoarseSearch, "_look", interrupted)
-    monkeypatch.setattr("runningbond.limit.nonassociated.POINTS", 0)
+    monkeypatch.setattr(CoarseSearch, "_search_glued", interrupted)
+    monkeypatch.setattr("runningbond.limit.nonassociated.COARSE_POINTS", 0)
     outcome = limit_nonassociated(published_scene("wall-w2"))
     assert outcome.status == "collapse"
     assert "interrupted" in outcome.message
     assert outcome.lower is not None
 
 
-def test_an_interrupt_in_a_neighbourhood_keeps_what_was_found_there(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupt_in_neighbourhood_keeps_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
     looked = coarse(rubble(3))
     looked.found.certificates = search(
         looked.system, solve_forces(looked.system, coulomb(looked.system.strength)), 1
@@ -199,8 +197,8 @@ def test_an_interrupt_in_a_neighbourhood_keeps_what_was_found_there(monkeypatch:
     assert looked.found.programs > 0
 
 
-def test_what_cannot_be_proved_exactly_hides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a wall whose lowest mechanism is refused each time, another one is found; the refused one is not kept."""
+def test_refused_certificate_does_not_hide_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """If the lowest mechanism is refused every time, another one is found, and the refused one is not kept."""
     free = coarse(rubble(3))
     free.run()
     lowest = free.found.lowest
@@ -215,10 +213,10 @@ def test_what_cannot_be_proved_exactly_hides_nothing(monkeypatch: pytest.MonkeyP
     assert lowest + 1e-4 < looked.found.lowest < np.inf
 
 
-def test_walls_of_no_parts_are_searched_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With no freedoms allowed to what is glued; the neighbourhood of what is found then is searched as well."""
+def test_full_wall_is_searched_if_nothing_is_glued(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No freedoms are allowed for glued walls. The neighbourhood of the certificate found is searched as well."""
     around: list[SearchLog] = []
-    monkeypatch.setattr("runningbond.limit.nonassociated.POINTS", 0)
+    monkeypatch.setattr("runningbond.limit.nonassociated.COARSE_POINTS", 0)
     monkeypatch.setattr("runningbond.limit.coarse.finest", lambda *arguments: None)
 
     def go_on(self: CoarseSearch) -> SearchLog:
@@ -231,7 +229,7 @@ def test_walls_of_no_parts_are_searched_themselves(monkeypatch: pytest.MonkeyPat
     assert [found.lowest for found in around] == pytest.approx([0.35582], abs=1e-5)
 
 
-def test_what_is_worth_a_proof_is_larger_by_more_than_interior_points_tell() -> None:
+def test_gain_worth_proof_exceeds_interior_point_accuracy() -> None:
     assert is_worth(np.inf, 0.3)
     assert is_worth(0.3, -np.inf)
     assert is_worth(0.3 + 2e-5, 0.3)
@@ -241,8 +239,8 @@ def test_what_is_worth_a_proof_is_larger_by_more_than_interior_points_tell() -> 
 
 
 @pytest.mark.long
-def test_a_rare_mechanism_is_found_in_the_neighbourhood_of_a_frequent_one() -> None:
-    """W6 inset by 20 mm, .2710 to four digits: one start in a hundred of the search over the wall leads to it."""
+def test_rare_mechanism_is_found_in_neighbourhood() -> None:
+    """W6 with an inset of 20 mm: 0.2710 to four digits, which one start in a hundred of the full search reaches."""
     looked = coarse(published_scene("wall-w6").with_joint(inset=0.02))
     looked.run()
     assert looked.found.lowest * looked.system.live_unit <= 0.27105

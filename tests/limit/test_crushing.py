@@ -1,4 +1,4 @@
-"""Joints of finite compressive strength: what one carries, and walls of them, by hand and by fibres."""
+"""Joints of finite compressive strength: strength domain of one joint, and walls by hand and by fibre models."""
 
 import copy
 import math
@@ -55,11 +55,11 @@ MATERIALS = {
     "capped all round": JointMaterial(0.6, 0.6, 0.2, compressive_strength=1.0),
     "stronger in tension": JointMaterial(0.5, 2.0, 2.0, compressive_strength=1.0),
 }
-OF_ALL = pytest.mark.parametrize("name", MATERIALS)
+EACH_MATERIAL = pytest.mark.parametrize("name", MATERIALS)
 
 
 def joint(name: str, n: int = 1) -> Crushing:
-    """Joints of a material, of unit area."""
+    """Joints of a material, each of unit area."""
     material = MATERIALS[name]
     strength, shear = np.full(n, material.compressive_strength), np.full(n, material.cap_shear)
     least = material.cohesion - material.friction * material.tension
@@ -68,18 +68,18 @@ def joint(name: str, n: int = 1) -> Crushing:
 
 
 def jumps(seed: int, n: int) -> Array:
-    """Directions of jumps ``(3, n)``, of entries that differ by up to three orders."""
+    """Directions of jumps ``(3, n)``, with components that differ by up to three orders of magnitude."""
     random = np.random.default_rng(seed)
     return np.asarray(random.normal(size=(3, n)) * 10 ** random.uniform(-3, 0, (3, n)))
 
 
-# --- what one joint carries ----------------------------------------------------------------------------------
+# --- strength domain of one joint ----------------------------------------------------------------------------
 
 
 def fibres(friction: float, cohesion: float, tension: float, strength: float, shear: float, n: int) -> tuple[Any, ...]:
     """Clarabel's rows A x + s = b and cones of tractions (σ, τ) and pressures p ≥ −σ, p ≥ 0 on n fibres, n of each.
 
-    With strengths of any size.
+    Strengths may have any magnitude.
     """
     one, zero = eye_array(n), 0 * eye_array(n)
     cone = vstack(
@@ -101,7 +101,7 @@ def fibres(friction: float, cohesion: float, tension: float, strength: float, sh
 
 
 def largest(cost: Array, equal: Any, given: Array, cone: Any, ellipse: Any, right: Array, cap: Array) -> float:
-    """Largest cost · x by Clarabel."""
+    """Largest cost · x, found by Clarabel."""
     rows = vstack([equal, cone, ellipse], format="csc") if len(given) else vstack([cone, ellipse], format="csc")
     cones = [clarabel.ZeroConeT(len(given))] if len(given) else []
     cones += [clarabel.NonnegativeConeT(len(right)), *[clarabel.SecondOrderConeT(3)] * (len(cap) // 3)]
@@ -112,9 +112,9 @@ def largest(cost: Array, equal: Any, given: Array, cone: Any, ellipse: Any, righ
     return -float(clarabel.DefaultSolver(nothing, -cost, csc_matrix(rows), every, cones, set_).solve().obj_val)
 
 
-@OF_ALL
-def test_a_joint_carries_the_resultants_of_400_fibres(name: str) -> None:
-    """In any direction as far as the best tractions on fibres, beyond which (f_t + f_m) |α₂ − α₁| / (8 n²) is left."""
+@EACH_MATERIAL
+def test_joint_dissipation_matches_400_fibres(name: str) -> None:
+    """In any direction, up to the discretisation error (f_t + f_m) |α₂ − α₁| / (8 n²) of n fibres."""
     material, one, n = MATERIALS[name], joint(name), 400
     at = (np.arange(n) + 0.5) / n
     program = fibres(material.friction, material.cohesion, material.tension, 1.0, material.cap_shear, n)
@@ -127,18 +127,18 @@ def test_a_joint_carries_the_resultants_of_400_fibres(name: str) -> None:
         assert -1e-8 * size <= exact - found <= left + 1e-8 * size
 
 
-@OF_ALL
-def test_forces_of_a_joint_are_the_slopes_of_what_it_dissipates(name: str) -> None:
+@EACH_MATERIAL
+def test_joint_forces_are_gradient_of_dissipation(name: str) -> None:
     for direction in jumps(2, 20).T:
-        if np.abs(direction[2]) > 1e-2 * np.abs(direction).max():  # elsewhere it has all but a kink
+        if np.abs(direction[2]) > 1e-2 * np.abs(direction).max():  # for smaller slips it nearly has a kink
             step = 1e-6 * np.abs(direction).max()
             changed = direction[:, None] + step * np.hstack([np.eye(3), -np.eye(3)])
             up, down = joint(name, 6).dissipation(changed).reshape(2, 3)
             assert joint(name).forces(direction[:, None])[:, 0] == pytest.approx((up - down) / (2 * step), abs=1e-4)
 
 
-@OF_ALL
-def test_forces_found_in_one_direction_lie_within_in_all_others(name: str) -> None:
+@EACH_MATERIAL
+def test_joint_forces_are_admissible_in_all_directions(name: str) -> None:
     directions = jumps(3, 300)
     forces = np.hstack([joint(name, 300).forces(directions), joint(name).blocks(4.0 ** -np.arange(8.0))])
     beyond = forces.T @ directions - joint(name, 300).dissipation(directions)
@@ -147,8 +147,8 @@ def test_forces_found_in_one_direction_lie_within_in_all_others(name: str) -> No
 
 @pytest.mark.parametrize("name", ["dry", "cohesive", "capped all round"])
 @pytest.mark.parametrize("slip", [0.0, 1e-12, 1e-3, 1.0])
-def test_what_a_joint_dissipates_has_no_seams(name: str, slip: float) -> None:
-    """Between closed forms and quadrature, and where its ends all but move as one; homogeneous, and even in slip."""
+def test_joint_dissipation_is_continuous_and_homogeneous(name: str, slip: float) -> None:
+    """Continuous between closed forms and quadrature, and for nearly equal openings; homogeneous, and even in slip."""
     one = joint(name)
     for tilt in 10.0 ** -np.arange(0.0, 17.0, 0.5):
         direction = np.array([[-0.3], [-0.3 + tilt], [slip]])
@@ -161,7 +161,7 @@ def test_what_a_joint_dissipates_has_no_seams(name: str, slip: float) -> None:
 
 @given(share=st.floats(1e-4, 1.0))
 @settings(max_examples=20)
-def test_a_dry_joint_whose_cap_knows_no_shear_is_a_stress_block(share: float) -> None:
+def test_dry_joint_with_shear_free_cap_is_stress_block(share: float) -> None:
     """M ≤ N/2 (l − N / (t f_c)) and V ≤ N tan φ, both at once."""
     one = joint("dry")
     blocks = one.blocks(np.array([share]))
@@ -176,7 +176,7 @@ def test_a_dry_joint_whose_cap_knows_no_shear_is_a_stress_block(share: float) ->
 
 
 def built(blocks: list[Array], crushing: JointMaterial, live: Any = None, grounds: list[Array] | None = None) -> Scene:
-    """Blocks on a flat base, or without weight between grounds."""
+    """Blocks on a flat base, or weightless blocks between given grounds."""
     more: dict[str, Any] = {"grounds": grounds} if grounds else {}
     load = Load((0.0, 0.0 if grounds else -9.81), (live or Lateral(),))
     block = BlockMaterial(DENSITY)
@@ -184,7 +184,7 @@ def built(blocks: list[Array], crushing: JointMaterial, live: Any = None, ground
 
 
 def collapse(scene: Scene) -> float:
-    """λ of a scene whose bracket is narrow."""
+    """λ of a scene, whose bracket must be narrow."""
     outcome = limit(scene)
     assert outcome.status == "collapse", outcome.message
     assert outcome.lower is not None
@@ -195,8 +195,8 @@ def collapse(scene: Scene) -> float:
 
 
 @pytest.mark.parametrize(("share", "height"), [(0.9, 1.0), (0.3, 2.5), (0.01, 1.0), (1e-4, 2.5), (1e-8, 1.0)])
-def test_the_toe_of_a_block_on_crushing_ground(share: float, height: float) -> None:
-    """N crushes that share of the base: pushed at its top V H = N (l/2 − N / (2 t f_c)), about N / (t f_c)."""
+def test_toe_of_block_on_crushing_ground(share: float, height: float) -> None:
+    """N crushes this share of the base. Pushed at its top: V H = N (l/2 − N / (2 t f_c)), turning about N / (t f_c)."""
     weight = DENSITY * 9.81 * THICKNESS * height
     material = JointMaterial(5.0, compressive_strength=weight / (share * THICKNESS), cap_shear=0.0)
     scene = built([rectangle(0, 0, 1, height)], material, PointLoad((0.0, height), (1.0, 0.0)))
@@ -204,12 +204,12 @@ def test_the_toe_of_a_block_on_crushing_ground(share: float, height: float) -> N
     outcome = limit(scene)
     if share > 1e-3:
         assert f"inside them: 1, foremost about ({1 - share:.3g}"[:-1] in outcome.message
-    corner = outcome.motion[0] @ [[1, 0], [0, 1], [height / 2, 1 / 2]]  # of the toe: down, and not sideways
+    corner = outcome.motion[0] @ [[1, 0], [0, 1], [height / 2, 1 / 2]]  # the toe moves down, not sideways
     assert -corner[1] == pytest.approx(share / (1 - share) * (corner[1] + outcome.motion[0] @ [0, 0, -1]), abs=1e-3)
 
 
 @pytest.mark.parametrize("share", [0.3, 0.01])
-def test_a_block_of_little_friction_slides_all_the_same(share: float) -> None:
+def test_block_of_low_friction_slides_on_crushing_ground(share: float) -> None:
     """V = N tan φ, whether its ground crushes or not."""
     weight = DENSITY * 9.81 * THICKNESS
     material = JointMaterial(0.1, compressive_strength=weight / (share * THICKNESS), cap_shear=0.0)
@@ -218,8 +218,8 @@ def test_a_block_of_little_friction_slides_all_the_same(share: float) -> None:
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.1, 0.3, 0.45])
 @pytest.mark.parametrize("shear", [0.0, 9.0])
-def test_an_eccentric_column_bears_the_pressure_on_twice_its_way_to_the_edge(eccentricity: float, shear: float) -> None:
-    """P = t f_c (l − 2 e); weightless, on ground."""
+def test_eccentric_column_carries_stress_block(eccentricity: float, shear: float) -> None:
+    """P = t f_c (l − 2 e) for a weightless column."""
     material = JointMaterial(0.6, compressive_strength=1e6, cap_shear=shear)
     live = PointLoad((0.5 + eccentricity, 2.0), (0.0, -1.0))
     scene = built([rectangle(0, 0, 1, 2)], material, live, [rectangle(0, -1, 1, 1)])
@@ -227,10 +227,10 @@ def test_an_eccentric_column_bears_the_pressure_on_twice_its_way_to_the_edge(ecc
 
 
 @pytest.mark.parametrize("hundredths", range(20))
-def test_a_heavy_column_bears_its_load_s_stress_block(hundredths: int) -> None:
-    """Of two blocks: of each bed, N = t f_c (l − 2 M / N) with what weighs on it, the smallest load of the two.
+def test_heavy_column_carries_stress_block(hundredths: int) -> None:
+    """Smallest of the loads of two blocks' beds, each from N = t f_c (l − 2 M / N), N with the weight above the bed.
 
-    Some of these were `failed`: few resultants are in use, and the metric of their repair is singular.
+    Some of these cases were `failed`: few resultants are in use, and the metric of their repair is singular.
     """
     strength, length, height, away = 5e6, 0.4, 0.2, hundredths / 100
     material = JointMaterial(0.7, compressive_strength=strength, cap_shear=0.0)
@@ -247,7 +247,7 @@ def test_a_heavy_column_bears_its_load_s_stress_block(hundredths: int) -> None:
 
 
 @pytest.mark.parametrize("strength", [2e5, 1e6])
-def test_a_stack_crushes_at_its_foot(strength: float) -> None:
+def test_stack_crushes_at_its_foot(strength: float) -> None:
     """n blocks b × h: λ = (b − n W / (t f_c)) / (n h)."""
     n, height = 3, 0.5
     material = JointMaterial(2.0, compressive_strength=strength, cap_shear=0.0)
@@ -258,7 +258,7 @@ def test_a_stack_crushes_at_its_foot(strength: float) -> None:
 
 @pytest.mark.parametrize(("factor", "status"), [(0.5, "infeasible"), (0.999, "infeasible"), (1.001, "collapse")])
 @pytest.mark.parametrize("shear", [0.0, 9.0])
-def test_a_column_too_heavy_for_its_foot_does_not_stand(factor: float, status: str, shear: float) -> None:
+def test_column_stands_up_to_strength_of_its_foot(factor: float, status: str, shear: float) -> None:
     strength = 2 * DENSITY * 9.81 * factor
     material = JointMaterial(0.6, compressive_strength=strength, cap_shear=shear)
     assert limit(built([rectangle(0, 0, 1, 1), rectangle(0, 1, 1, 1)], material)).status == status
@@ -272,16 +272,16 @@ def strut(material: JointMaterial) -> Scene:
     )
 
 
-def test_a_strut_between_abutments_that_crush_is_a_plastic_arch() -> None:
-    """P = t f_c h² / L: thrust t f_c h / 2 with the arm h / 2 over the span's half; without crushing it locks."""
+def test_strut_between_crushing_abutments_is_plastic_arch() -> None:
+    """P = t f_c h² / L: thrust t f_c h / 2 with arm h / 2 over half the span; without crushing the strut locks."""
     exact = THICKNESS * 1e6 * 0.2**2 / 2
     material = JointMaterial(3.0, compressive_strength=1e6, cap_shear=0.0)
     assert collapse(strut(material)) == pytest.approx(exact, rel=1e-6)
     assert limit(strut(JointMaterial(3.0))).status == "unbounded"
 
 
-def test_joints_of_one_material_may_crush_beside_others_that_do_not() -> None:
-    """The strut's abutments crush, its middle does not: T (h − T / (2 t f_c)) is largest at T = t f_c h."""
+def test_crushing_and_strong_joints_in_one_wall() -> None:
+    """The strut's abutments crush, its middle joint does not: T (h − T / (2 t f_c)) is largest at T = t f_c h."""
     whole = strut(JointMaterial(3.0, compressive_strength=1e6, cap_shear=0.0))
     middle = [bool((whole.joints.block[j] < 2).all()) for j in range(len(whole.joints))]
     scene = replace(
@@ -297,10 +297,10 @@ def test_joints_of_one_material_may_crush_beside_others_that_do_not() -> None:
 @pytest.mark.parametrize(
     ("gravity", "live", "tension"), [(0.0, [0, 9.81], 6e3), (0.0, [0, 9.81], None), ([0, 4.0], [9.81, 0], 6e3)]
 )
-def test_a_cap_on_pressures_leaves_tension_alone(gravity: Any, live: list[float], tension: float | None) -> None:
-    """A joint that is stronger in tension than under pressure is pulled apart at f_t A; sheared, motion says the same.
+def test_compressive_cap_does_not_limit_tension(gravity: Any, live: list[float], tension: float | None) -> None:
+    """A joint stronger in tension than in compression is pulled apart at f_t A. Sheared, it agrees with `dem-dynamic`.
 
-    f_t is c / tan φ unless given, which a weak stone's f_m is easily below.
+    If not given, f_t is c / tan φ, which easily exceeds f_m of a weak stone.
     """
     cut = {} if tension is None else {"tensile_strength": tension}
     strengths = {"friction": 0.6, "cohesion": 8e3, "compressive_strength": 4e3, **cut}
@@ -324,15 +324,15 @@ def test_a_cap_on_pressures_leaves_tension_alone(gravity: Any, live: list[float]
 
 
 def fibre_load(scene: Scene, n: int) -> float:
-    """Largest λ that tractions, one on each of n pieces of every joint, balance, from equations of its own."""
+    """Largest λ balanced by tractions on n fibres of each joint, from independent equilibrium equations."""
     joints, free = scene.joints, movable_freedoms(scene)
     start, run = joints.ends[:, 0], joints.ends[:, 1] - joints.ends[:, 0]
     tangent = run / joints.length[:, None]
     normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
     at = start[:, None] + (np.arange(n) + 0.5)[None, :, None] / n * run[:, None]
     count = len(joints) * n
-    columns = np.zeros((3 * len(scene.blocks), 3 * count + 1))  # σ, τ, p, which has no resultant, and λ
-    pull = np.stack([np.repeat(part, n, axis=0) for part in (normal, tangent)])  # on a; on b the opposite
+    columns = np.zeros((3 * len(scene.blocks), 3 * count + 1))  # σ, τ, p (without resultant), λ
+    pull = np.stack([np.repeat(part, n, axis=0) for part in (normal, tangent)])  # on block a, opposite on b
     for side, sense in ((0, 1.0), (1, -1.0)):
         block = np.repeat(joints.block[:, side], n)
         arm = at.reshape(-1, 2) - scene.blocks.centroid[block]
@@ -357,8 +357,8 @@ def fibre_load(scene: Scene, n: int) -> float:
 @pytest.mark.parametrize(
     ("strength", "friction", "cohesion"), [(3e5, 0.7, 0.0), (2e4, 0.7, 0.0), (3e4, 0.5, 3e3), (2e4, 0.2, 0.0)]
 )
-def test_the_bracket_holds_what_fibres_carry(shear: float, strength: float, friction: float, cohesion: float) -> None:
-    """A wall of five blocks whose joints are 60 fibres each: below the upper bound, and hardly below the lower."""
+def test_bracket_contains_load_of_fibre_model(shear: float, strength: float, friction: float, cohesion: float) -> None:
+    """Five blocks with 60 fibres per joint: their load is below the upper bound, at most 0.1 % below the lower."""
     scene = courses(
         [[0.5, 0.5], [1], [0.5, 0.5]],
         joint={
@@ -378,8 +378,8 @@ def test_the_bracket_holds_what_fibres_carry(shear: float, strength: float, fric
     assert fibre_load(scene, 20) <= found * (1 + 1e-7)
 
 
-def test_a_course_that_crushes_on_all_of_its_bed_at_once() -> None:
-    """Under a growing weight, beside a tie that bears none of it: λ = f_m / (ρ g h) − 1, whoever proves which end."""
+def test_course_crushes_on_whole_bed() -> None:
+    """Under growing weight, beside a tie without force: λ = f_m / (ρ g h) − 1 for both bounds."""
     strength, height = 203504.49175942724, 2.655326128687889
     size = {"block_width": 2 * height, "block_height": height, "thickness": 6.638}
     dry = {"friction": 0.3, "cohesion": 13094.0, "tensile_strength": 43646.0}
@@ -399,8 +399,8 @@ def test_a_course_that_crushes_on_all_of_its_bed_at_once() -> None:
     assert outcome.upper == pytest.approx(exact, rel=NARROW)
 
 
-def test_the_inner_polyhedron_grows_to_the_set() -> None:
-    """Lower bounds rise with resultants known, and are never above the upper ones."""
+def test_inner_polyhedron_converges_to_strength_domain() -> None:
+    """Lower bounds rise as resultants are added, and never exceed the upper bounds."""
     system = equilibrium(panel(joint__compressive_strength=3e4, wall__height=0.36)).with_crushing()
     joints = system.crushing
     assert joints is not None
@@ -419,8 +419,8 @@ def test_the_inner_polyhedron_grows_to_the_set() -> None:
 
 
 @pytest.mark.parametrize(("name", "strength"), [("panel-01", 1e6), ("wall-w1", 3e10)])
-def test_a_strength_without_end_changes_nothing(name: str, strength: float) -> None:
-    """To 1e-6; one far beyond all forces is left out, and that is said."""
+def test_huge_compressive_strength_changes_nothing(name: str, strength: float) -> None:
+    """To 1e-6. A strength far above all forces is left out, and the message states that."""
     scene = published_scene(name)
     exact, found, beyond = (limit(scene.with_joint(compressive_strength=f)) for f in (None, strength, 1e15))
     assert found.lower == pytest.approx(exact.lower, rel=1e-6)
@@ -430,8 +430,8 @@ def test_a_strength_without_end_changes_nothing(name: str, strength: float) -> N
     assert "crush" not in exact.message
 
 
-def test_a_wall_s_load_grows_with_the_strength_of_its_joints() -> None:
-    """Random walls of all keys, up to what they bear without crushing."""
+def test_load_grows_with_compressive_strength() -> None:
+    """Random walls with all keys; the load without crushing is the largest."""
     found = 0
     for seed in range(8):
         content = random_scene(seed)
@@ -454,7 +454,7 @@ def test_a_wall_s_load_grows_with_the_strength_of_its_joints() -> None:
 
 
 @pytest.mark.parametrize("seed", range(101, 105))
-def test_a_mirrored_wall_crushes_alike(seed: int) -> None:
+def test_mirrored_crushing_wall_has_same_load(seed: int) -> None:
     content = random_scene(seed)
     if content["support"]["kind"] == "corners":
         content["support"]["kind"] = "pinned-corners"
@@ -466,7 +466,7 @@ def test_a_mirrored_wall_crushes_alike(seed: int) -> None:
         assert one.multiplier == pytest.approx(two.multiplier, rel=2e-6, abs=1e-7)
 
 
-# --- all else that a wall may have ---------------------------------------------------------------------------
+# --- crushing with other features ----------------------------------------------------------------------------
 
 TIE = {"from": [0.03, 0.33], "to": [-1.0, 0.1], "area": 1e-4, "young": 2e11, "yield": 30.0}
 BEAM = {"height": 0.1, "force": [0, -2e3], "drive": {"force": [1, 0]}}
@@ -490,8 +490,8 @@ def crushing_panel(name: str) -> Scene:
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_forces_and_mechanism_are_proved_by_others(name: str, tmp_path: Path) -> None:
-    """By the checker's own tractions and equations."""
+def test_checker_proves_forces_and_mechanism(name: str, tmp_path: Path) -> None:
+    """With the checker's own tractions and equations."""
     scene = crushing_panel(name)
     outcome = run_model("limit", scene)
     assert outcome.status == "collapse", outcome.message
@@ -501,8 +501,8 @@ def test_forces_and_mechanism_are_proved_by_others(name: str, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("array", ["force", "motion", "multiplier"])
-def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, tmp_path: Path) -> None:
-    """A block whose toe bears more than it can, in balance; a motion and a multiplier that do not go together."""
+def test_checker_rejects_wrong_crushing_results(array: str, tmp_path: Path) -> None:
+    """Forces for joints 10 % weaker; horizontal motions 0.1 % too large; multipliers 0.1 % too large."""
     scene = crushing_panel("dry")
     weaker = scene.with_joint(compressive_strength=0.9 * 4e4)
     outcome = limit(scene)
@@ -516,8 +516,8 @@ def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, tmp_pa
     assert not check(tmp_path)
 
 
-def test_joints_that_nothing_presses_take_no_shear() -> None:
-    """Without weight, most of a wall bears nothing: rounding that pulls at a joint was divided by next to nothing."""
+def test_unloaded_joints_carry_no_shear() -> None:
+    """Without weight most joints are unloaded: rounding errors in tension were divided by a pressure of almost zero."""
     system = equilibrium(courses([[1, 1], [0.5, 1, 0.5]], joint={"friction": 0.7, "compressive_strength": 1e5}))
     system = system.with_crushing()
     assert system.crushing is not None
@@ -528,24 +528,26 @@ def test_joints_that_nothing_presses_take_no_shear() -> None:
     assert abs(forces.tangential).max() < 1e-12
 
 
-def test_forces_at_the_ends_are_what_points_without_a_cap_might_carry() -> None:
+def test_end_forces_of_crushing_joints_obey_coulomb() -> None:
     scene = crushing_panel("cohesive and tied")
     system, force = equilibrium(scene), limit(scene).force / equilibrium(scene).force_unit
     assert system.strength.violation(*force.T).max() < 1e-9 * np.abs(force).max()
 
 
-def test_certificates_know_no_crushing_and_refuse_it() -> None:
-    """They would certify loads that such a wall cannot bear."""
+def test_nonassociated_analysis_refuses_crushing() -> None:
+    """Its certificates neglect crushing, and would prove loads that such a wall cannot carry."""
     scene = courses([[1], [1]], joint__compressive_strength=2e4)
     without = run_model("limit-nonassociated", scene.with_joint(compressive_strength=None))
     assert without.lower is not None
     assert collapse(scene) < 0.9 * without.lower
-    with pytest.raises(SceneError, match="joint.compressive_strength = 20000.0: is not taken by limit-nonassociated"):
+    with pytest.raises(
+        SceneError, match="joint.compressive_strength = 20000.0: is not supported by limit-nonassociated"
+    ):
         run_model("limit-nonassociated", scene)
 
 
-def test_a_large_wall_is_bracketed_by_the_repaired_interior_point() -> None:
-    """204 blocks that slide, whatever crushes."""
+def test_repaired_interior_point_brackets_large_crushing_wall() -> None:
+    """204 blocks that slide at tan φ = 0.6, whether joints crush or not."""
     scene = panel(wall__length=2.16, wall__height=1.32, joint__compressive_strength=5e5)
     assert is_large(equilibrium(scene))
     outcome = limit(scene)
@@ -557,17 +559,17 @@ def test_a_large_wall_is_bracketed_by_the_repaired_interior_point() -> None:
 
 
 @pytest.mark.parametrize("when", [1, 2, 8])
-def test_ctrl_c_leaves_the_bracket_of_the_last_program(monkeypatch: pytest.MonkeyPatch, when: int) -> None:
-    """Of all but the first forces and a mechanism are known, and prove bounds about the answer."""
+def test_ctrl_c_keeps_bracket_of_last_program(monkeypatch: pytest.MonkeyPatch, when: int) -> None:
+    """After the first program, known forces and a mechanism prove bounds on the load."""
     material = JointMaterial(0.65, compressive_strength=2e5)
     blocks = [rectangle(x, 0.5 * k, 1.0, 0.5) for k in range(4) for x in (0.0, 1.0)]
     scene = built(blocks, material)
     exact, programs = collapse(scene), [0]
 
     def solve(program: dict[str, Any], tolerance: float) -> InteriorPoint:
-        programs[0] += bool(np.any(program["c"]))  # rests have no aim
+        programs[0] += bool(np.any(program["c"]))  # programs of rest have no cost
         if programs[0] == when:
-            programs[0] += 1000  # what follows is finished
+            programs[0] += 1000  # the following programs run to their end
             raise KeyboardInterrupt
         return interior_point(program, tolerance)
 

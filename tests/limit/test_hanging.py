@@ -1,4 +1,4 @@
-"""Walls that hang on their ties: how far they go until those yield, and that models follow them so far."""
+"""Walls that hang on ties: displacement until the ties yield, and models that follow the wall that far."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ WEIGHT = 1800 * 9.81 * WIDTH * HEIGHT * THICKNESS
 
 
 def pier(young: float, **changes: Any) -> Scene:
-    """A pier of one block a course, with an unbonded bar on its axis from its rock to its top."""
+    """A pier of one block per course, with an unbonded bar on its axis from the rock below to its top."""
     middle, head = WIDTH / 2, HEIGHT - HEIGHT / COURSES / 2
     tie = {"from": [middle, head - LENGTH], "to": [middle, head], "area": BAR, "young": young}
     return courses(
@@ -33,8 +33,8 @@ def pier(young: float, **changes: Any) -> Scene:
 
 
 @pytest.mark.parametrize("young", [2.1e11, 5e10])
-def test_a_pier_hangs_on_its_bar_by_the_levers_of_its_toe(young: float) -> None:
-    """It turns about its toe until the bar, b / 2 away, is longer by what is left of its force, the far corner more."""
+def test_hanging_displacement_of_pier(young: float) -> None:
+    """The pier turns about its toe until the bar, b / 2 away, yields; the far corner has a longer lever arm."""
     slack = (YIELD - PRELOAD) * LENGTH / (young * BAR)
     exact = slack / (WIDTH / 2) * np.hypot(WIDTH, HEIGHT)
     assert hanging_displacement(pier(young)) == pytest.approx(exact, rel=1e-6)
@@ -49,10 +49,10 @@ def test_a_pier_hangs_on_its_bar_by_the_levers_of_its_toe(young: float) -> None:
         *at_length(("dem-dynamic", 2.1e11), ("fem", 1e10)),
     ],
 )
-def test_a_pier_bears_the_yield_force_of_its_bar_however_soft_that_is(model: str, young: float) -> None:
-    """λ = (W + Y) b / (W H): steel, glass or rope yield at one load, the head 0.2 m, 0.7 m or 30 m from where it was.
+def test_pier_load_is_independent_of_bar_stiffness(model: str, young: float) -> None:
+    """λ = (W + Y) b / (W H): steel, glass and rope yield at one load, with the head displaced by 0.2 m, 0.7 m or 30 m.
 
-    It is no load of a pier that has turned so far, which messages say.
+    A pier that has turned so far does not carry this load in reality; messages say so.
     """
     outcome = run_model(model, pier(young))
     exact = (WEIGHT + YIELD) * WIDTH / (WEIGHT * HEIGHT)
@@ -65,10 +65,10 @@ def test_a_pier_bears_the_yield_force_of_its_bar_however_soft_that_is(model: str
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
-def test_a_soft_tie_holds_what_slides_until_the_wall_gives_way_beside_it(model: str) -> None:
-    """A portal slides at tan φ + c A / W, but for the strap at its left pier; without that pier it slides at last.
+def test_soft_tie_holds_pier_until_wall_slides_beside_it(model: str) -> None:
+    """A portal slides at tan φ + c A / W; with a strap at its left pier, only lintel and right pier slide.
 
-    A is of two joints either way. The strap would be a metre longer when it yields.
+    The area A is that of two joints either way. The strap would be a metre longer when it yields.
     """
     glue = {"cohesion": 1000.0, "tensile_strength": 1000.0}
     tie = {"from": [-2.0, 0.1], "to": [0.0, 0.1], "area": 1e-5, "young": 1.2e8, "yield": 320.0}

@@ -1,4 +1,4 @@
-"""Walls that the interior point is asked for: exact forces and mechanism, beside HiGHS's vertex."""
+"""Large walls solved by interior point and repair: exact forces and mechanisms, compared with HiGHS's vertex."""
 
 import signal
 import threading
@@ -79,17 +79,15 @@ def wall(name: str) -> Scene:
 
 
 @pytest.mark.parametrize("name", COLLAPSES)
-def test_the_interior_point_s_repaired_bracket_holds_the_simplex_s_multiplier(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """No wider than 1e-6, of forces and a mechanism admissible to rounding; HiGHS is not asked."""
+def test_repaired_bracket_contains_simplex_multiplier(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The bracket is at most 1e-6 wide, with forces and mechanism admissible to rounding, and HiGHS is not called."""
     scene = wall(name)
     system = equilibrium(scene).under_live_load()
     assert is_large(system)
     state = limit_state(system)
     exact = state.system.load(solve_forces(state.system, coulomb(state.system.strength)).multiplier)
 
-    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", fail_if_called)
     outcome = limit(scene)
     assert outcome.status == "collapse"
     assert outcome.lower is not None
@@ -110,14 +108,14 @@ def test_the_interior_point_s_repaired_bracket_holds_the_simplex_s_multiplier(
         ({"wall__opening": [{"from": [0.5, 0.0], "to": [2.4, 0.6]}], "joint__friction": 0.1}, "infeasible"),
     ],
 )
-def test_verdicts_are_those_of_highs(changes: dict[str, Any], status: str) -> None:
+def test_verdicts_match_highs(changes: dict[str, Any], status: str) -> None:
     scene = panel(**{**SIZE, **changes})
     assert limit(scene).status == status
     system = equilibrium(scene).under_live_load()
     assert judge(LimitState(system, solve_forces(system, coulomb(system.strength))))[0] == status
 
 
-def unasked(*_: object, **__: object) -> None:
+def fail_if_called(*_: object, **__: object) -> None:
     pytest.fail("HiGHS was asked")
 
 
@@ -130,13 +128,13 @@ def unasked(*_: object, **__: object) -> None:
         {"load__gravity": [2.5, -9.81], "joint": {"friction": 0.1, "cohesion": 500.0}},
     ],
 )
-def test_a_mechanism_proves_that_a_large_wall_falls_at_rest(
+def test_mechanism_proves_fall_of_large_wall_under_dead_load(
     changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """HiGHS looks for forces that are not there for minutes on 2000 blocks, and for hours on 10 000."""
+    """HiGHS takes minutes to find that there are no such forces for 2000 blocks, and hours for 10 000."""
     system = equilibrium(panel(**{**SIZE, **changes})).under_live_load()
     assert judge(LimitState(system, solve_forces(system, coulomb(system.strength))))[0] == "infeasible"
-    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", fail_if_called)
     outcome = limit(system.scene)
     assert outcome.status == "infeasible"
     check = check_mechanism(system.scene, outcome.motion, dead_load(system.scene), live_load(system.scene), 0.0)
@@ -145,17 +143,17 @@ def test_a_mechanism_proves_that_a_large_wall_falls_at_rest(
 
 
 @pytest.mark.parametrize("friction", [0.102, 0.1042])
-def test_a_large_wall_falls_at_rest_where_gravity_leans_beyond_friction(
+def test_large_wall_falls_if_gravity_is_inclined_beyond_friction(
     friction: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By a fifth of a percent of it on either side: 1.02 / 9.81 is 0.10398."""
+    """Friction 1.9 % below and 0.2 % above the limit 1.02 / 9.81 = 0.10398."""
     changes = {"load__gravity": [1.02, -9.81], "load__live": {"kind": "lateral"}, "joint__friction": friction}
-    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", fail_if_called)
     assert limit(panel(**SIZE, **changes)).status == ("infeasible" if friction < 1.02 / 9.81 else "collapse")
 
 
 def stopped_too_early(monkeypatch: pytest.MonkeyPatch) -> tuple[Scene, float]:
-    """A wall whose interior point is asked for less than its bracket needs, and its multiplier."""
+    """A wall whose interior point stops before its bracket is narrow enough, and its exact multiplier."""
     scene = wall("dry")
     exact = limit(scene).multiplier
     assert exact is not None
@@ -164,14 +162,14 @@ def stopped_too_early(monkeypatch: pytest.MonkeyPatch) -> tuple[Scene, float]:
     return scene, exact
 
 
-def test_an_interior_point_that_stopped_too_early_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of very large walls it is asked for less; where that is not enough, for more, and HiGHS is not."""
+def test_interior_point_that_stopped_too_early_is_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Very large walls start with a loose tolerance; if that is not enough, a tight one follows, without HiGHS."""
     scene, exact = stopped_too_early(monkeypatch)
     system = equilibrium(scene).under_live_load()
     first = LimitState(system, proved(system, resting_forces(system.under_dead_load())[0]))
     assert first.admissible
     assert not first.sound
-    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", fail_if_called)
     outcome = limit(scene)
     assert outcome.status == "collapse"
     assert outcome.lower is not None
@@ -180,7 +178,7 @@ def test_an_interior_point_that_stopped_too_early_goes_on(monkeypatch: pytest.Mo
     assert outcome.upper <= outcome.lower * (1 + WIDE)
 
 
-def test_ctrl_c_as_the_interior_point_goes_on_leaves_what_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_in_repeated_interior_point_keeps_first_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, exact = stopped_too_early(monkeypatch)
     interrupt_at(1, monkeypatch, program=2)
     outcome = limit(scene)
@@ -191,8 +189,8 @@ def test_ctrl_c_as_the_interior_point_goes_on_leaves_what_it_had(monkeypatch: py
     assert 0.5 * exact < outcome.lower <= exact <= outcome.upper < 1.5 * exact
 
 
-def test_what_the_repair_leaves_is_exact_from_a_rough_interior_point() -> None:
-    """At 1e-4 the bracket is wide, and true all the same."""
+def test_repair_of_rough_interior_point_is_exact() -> None:
+    """From a tolerance of 1e-4 the bracket is wide but contains the exact multiplier."""
     system = equilibrium(wall("dry")).under_live_load()
     exact = solve_forces(system, coulomb(system.strength)).multiplier
     program = force_program(system, coulomb(system.strength))
@@ -211,8 +209,8 @@ def test_what_the_repair_leaves_is_exact_from_a_rough_interior_point() -> None:
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
-def test_forces_that_leave_their_bounds_are_held_there(tolerance: float) -> None:
-    """Where a wall slides as a whole many forces end at their bounds, and no state of rest is given to go to."""
+def test_repair_holds_forces_at_their_bounds(tolerance: float) -> None:
+    """If a wall slides as a whole, many forces end at their bounds; no resting state is given to interpolate to."""
     system = equilibrium(published_scene("panel-01")).under_live_load()
     forces = coulomb(system.strength)
     program = force_program(system, forces)
@@ -226,8 +224,8 @@ def test_forces_that_leave_their_bounds_are_held_there(tolerance: float) -> None
     assert 0 < exact - found[-1] < 10 * tolerance * exact
 
 
-def test_forces_that_cannot_be_brought_inside_prove_nothing() -> None:
-    """Without a state of rest to go to, or towards one that is outside itself."""
+def test_repair_returns_none_if_it_fails() -> None:
+    """For forces shifted out of their bounds, without a resting state, and for a reversed mechanism."""
     system = equilibrium(wall("dry")).under_live_load()
     program = force_program(system, coulomb(system.strength))
     point = interior_point(program, 1e-9)
@@ -236,7 +234,7 @@ def test_forces_that_cannot_be_brought_inside_prove_nothing() -> None:
     assert admissible(program, replace(point, motion=-point.motion, slack=np.zeros_like(point.slack))) is None
 
 
-def test_a_wall_that_only_the_live_load_holds_up_rests_on_nothing() -> None:
+def test_wall_held_up_by_live_load_has_no_resting_forces() -> None:
     system = equilibrium(panel(**SIZE, support__kind="corners")).under_live_load()
     assert resting_forces(system.under_dead_load())[0] is None
     assert proved(system, None).status != "optimal"
@@ -244,14 +242,14 @@ def test_a_wall_that_only_the_live_load_holds_up_rests_on_nothing() -> None:
 
 @pytest.fixture(autouse=True)
 def _listens_for_ctrl_c() -> Iterator[None]:
-    """Whoever runs the tests in the background may have left it ignored."""
+    """Listen for Ctrl-C, which may be ignored if the tests run in the background."""
     listener = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, listener)
 
 
 class Interrupted:
-    """Clarabel with a signal at its `at`-th iteration."""
+    """Clarabel that raises a signal at its `at`-th iteration."""
 
     def __init__(self, at: int, how: signal.Signals, *program: Any) -> None:
         self._at, self._how, self._solver = at, how, clarabel.DefaultSolver(*program)
@@ -271,7 +269,7 @@ class Interrupted:
 def interrupt_at(
     iteration: int, monkeypatch: pytest.MonkeyPatch, program: int = 1, how: signal.Signals = signal.SIGINT
 ) -> None:
-    """Press Ctrl-C, or send another signal, in a program: that of rest is number 0, that of collapse number 1."""
+    """Press Ctrl-C, or send another signal, in a program: number 0 is that of rest, number 1 that of collapse."""
     made = count()
     parts = {name: getattr(clarabel, name) for name in ("DefaultSettings", "ZeroConeT", "NonnegativeConeT")}
 
@@ -284,10 +282,10 @@ def interrupt_at(
 
 @pytest.mark.parametrize("iteration", [3, 6, 8])
 @pytest.mark.parametrize("name", ["dry", "opening", "tied", "cohesive"])
-def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
+def test_ctrl_c_keeps_bracket_proved_so_far(
     name: str, iteration: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Wide, never called a collapse, and with the multiplier in it; a bound that is not proved is not there.
+    """The bracket is wide, contains the multiplier, and is never called a collapse; unproved bounds are None.
 
     The forces and the mechanism that prove it are kept, and the checker finds both bounds in them.
     """
@@ -313,8 +311,8 @@ def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_while_the_proof_is_made_leaves_the_proof(how: signal.Signals, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It takes seconds, of minutes that the interior point took, all of which were lost; who listens hears of it."""
+def test_ctrl_c_during_proof_keeps_proof(how: signal.Signals, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A proof takes seconds after minutes of solving, all of which were lost; the previous handler is still called."""
     scene, heard = wall("dry"), []
     exact = limit(scene).multiplier
 
@@ -340,8 +338,8 @@ def test_ctrl_c_while_the_proof_is_made_leaves_the_proof(how: signal.Signals, mo
 
 
 @pytest.mark.parametrize("lets_go", [True, False])
-def test_a_second_ctrl_c_while_the_proof_is_made_ends_it(lets_go: bool) -> None:
-    """Also of a listener that leaves the second one to the system: it is not given the first place again."""
+def test_second_ctrl_c_during_proof_ends_it(lets_go: bool) -> None:
+    """If the handler hands the second one over to the system (`lets_go`), it is not installed again afterwards."""
 
     def listen(number: int, frame: object) -> None:
         if lets_go:
@@ -357,12 +355,12 @@ def test_a_second_ctrl_c_while_the_proof_is_made_ends_it(lets_go: bool) -> None:
     assert signal.getsignal(signal.SIGINT) is (signal.SIG_IGN if lets_go else listen)
 
 
-def test_ctrl_c_leaves_limit_nonassociated_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the associated program as far as it came, and of its end while one start is made."""
+def test_ctrl_c_keeps_associated_bound_of_limit_nonassociated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interrupted in the associated program, and in the program after it, that of a single start."""
     scene, after = wall("dry"), [8, 4]
     exact = limit(scene).multiplier
     assert exact is not None
-    monkeypatch.setattr("runningbond.limit.large.POINTS", 0)
+    monkeypatch.setattr("runningbond.limit.large.LARGE_POINTS", 0)
     for number, iteration in enumerate(after, start=1):
         with monkeypatch.context() as patch:
             interrupt_at(iteration, patch, program=number)
@@ -373,8 +371,8 @@ def test_ctrl_c_leaves_limit_nonassociated_the_bound(monkeypatch: pytest.MonkeyP
         assert "interrupted" in outcome.message
 
 
-def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """While forces of rest are looked for; the handler is there again afterwards."""
+def test_ctrl_c_before_any_proof_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """While forces at rest are searched for; the handler is restored afterwards."""
     interrupt_at(2, monkeypatch, program=0)
     before = signal.getsignal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt):
@@ -383,7 +381,7 @@ def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.Monke
 
 
 def test_ctrl_c_does_not_wait_for_highs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It holds no lock of Python's while it solves, and looks up for nobody: it is left alone in a thread."""
+    """HiGHS neither holds Python's lock nor checks for signals while it solves: it is abandoned in a thread."""
     solver, left = threading.Event(), threading.Event()
 
     def endless(**_: Any) -> None:
@@ -400,8 +398,8 @@ def test_ctrl_c_does_not_wait_for_highs(monkeypatch: pytest.MonkeyPatch) -> None
     solver.set()
 
 
-def test_ctrl_c_in_the_bound_of_a_model_in_motion_ends_that_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    """`limit` ends with what it has proved; whoever asked for a bound on the way to something else is to stop."""
+def test_ctrl_c_in_limit_bound_ends_dynamic_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`limit` returns what it has proved, but a model that only needs its bound is to stop."""
     scene = panel(**SIZE, joint={"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 5e9})
     exact = limit(scene).upper
     assert exact is not None
@@ -413,13 +411,13 @@ def test_ctrl_c_in_the_bound_of_a_model_in_motion_ends_that_too(monkeypatch: pyt
 
 
 @pytest.mark.parametrize("name", ["dry", "cohesive", "pulled up"])
-def test_a_proved_bound_says_that_a_wall_does_not_lock(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without HiGHS, which needs minutes to find no forces on 1000 blocks."""
+def test_proved_bound_excludes_self_locking(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without HiGHS, which needs minutes to find that there are no such forces for 1000 blocks."""
     monkeypatch.setattr("runningbond.limit.associated.solve_forces", None)
     assert not is_self_locking(wall(name))
 
 
-def test_bounds_of_weaker_joints_are_not_taken_for_those_of_a_wall(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupted_bound_of_cut_strengths_is_discarded(monkeypatch: pytest.MonkeyPatch) -> None:
     interrupt_at(6, monkeypatch)
     outcome = limit(wall("glued for good"))
     assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", 0.0, None)

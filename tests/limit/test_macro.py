@@ -1,4 +1,4 @@
-"""Macro-blocks: what moves when blocks are glued, and what its load is worth for the wall itself."""
+"""Macro-blocks: mechanisms of glued walls, and what their loads prove for the full wall."""
 
 from pathlib import Path
 from typing import Any
@@ -43,8 +43,8 @@ def associated(system: Equilibrium) -> float:
 
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5])
 @pytest.mark.parametrize("name", WALLS)
-def test_the_mechanism_of_a_glued_wall_is_one_of_the_wall_at_the_same_load(name: str, share: float) -> None:
-    """Glued anywhere: it obeys the flow rule everywhere, its load is an upper bound, and glued joints do not move."""
+def test_mechanism_of_glued_wall_is_admissible_in_full_wall(name: str, share: float) -> None:
+    """Randomly glued: it obeys the flow rule everywhere, its load is an upper bound, and glued joints do not move."""
     scene = wall(name)
     system = equilibrium(scene).under_live_load()
     joints = np.random.default_rng(0).random(len(scene.joints.block)) < share
@@ -65,7 +65,7 @@ def test_the_mechanism_of_a_glued_wall_is_one_of_the_wall_at_the_same_load(name:
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_nothing_is_lost_where_only_what_moves_as_one_is_glued(name: str) -> None:
+def test_gluing_joints_without_jumps_keeps_multiplier(name: str) -> None:
     scene = wall(name)
     system = equilibrium(scene).under_live_load()
     found = solve_forces(system, coulomb(system.strength))
@@ -74,25 +74,25 @@ def test_nothing_is_lost_where_only_what_moves_as_one_is_glued(name: str) -> Non
     assert associated(glued.system) == pytest.approx(found.multiplier, rel=1e-8)
 
 
-def test_blocks_that_one_point_holds_are_not_glued() -> None:
+def test_one_still_point_does_not_glue_blocks() -> None:
     scene = wall("dry")
     system = equilibrium(scene).under_live_load()
     still = np.arange(len(system.points)) % 2 == 0
     assert glue(system, place(scene), still).system.freedoms == system.freedoms
 
 
-def test_a_wall_glued_to_the_ground_does_not_move() -> None:
+def test_wall_glued_to_ground_has_no_freedoms() -> None:
     scene = wall("dry")
     system = equilibrium(scene).under_live_load()
     assert glue(system, place(scene), np.ones(len(system.points), dtype=bool)).system.freedoms == 0
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_large_walls_collapse_at_certified_loads_below_the_associated_one(
+def test_large_walls_have_certified_loads_below_associated_load(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With the size from which walls are large lowered; without a certificate that load is all there is."""
-    monkeypatch.setattr("runningbond.limit.large.POINTS", 0)
+    """With the size threshold of large walls set to 0. Without a certificate only the associated load is reported."""
+    monkeypatch.setattr("runningbond.limit.large.LARGE_POINTS", 0)
     scene = wall(name)
     outcome, bound = limit_nonassociated(scene), limit(scene).multiplier
     assert bound is not None
@@ -107,10 +107,8 @@ def test_large_walls_collapse_at_certified_loads_below_the_associated_one(
 
 
 @pytest.mark.parametrize(("name", "glued"), [("panel-12", True), ("wall-w1", False)])
-def test_mechanisms_of_few_parts_are_found_in_the_glued_wall_and_others_in_the_wall(
-    name: str, glued: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Each by itself: panel-12's lies a seventh below what any other sequence of its first start finds."""
+def test_glued_and_full_sequences_find_mechanisms(name: str, glued: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each sequence alone: panel-12's load is a seventh below what other sequences of its first start find."""
     system = equilibrium(published_scene(name)).under_live_load()
     order = canonical_order(system)
     ordered, at = order.applied(system), order.places(system.scene)
@@ -125,16 +123,16 @@ def test_mechanisms_of_few_parts_are_found_in_the_glued_wall_and_others_in_the_w
         assert exact.least.multiplier == pytest.approx(0.06686, abs=1e-5)
 
 
-def test_repaired_certificates_are_those_of_highs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both ends to 1e-7, and no farther: forces near an extreme load are within it."""
+def test_repaired_certificates_match_highs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both ends agree to 1e-7 only, because forces near an extreme load are accepted."""
     system = equilibrium(published_scene("wall-w2")).under_live_load()
     pressure = solve_forces(system, coulomb(system.strength)).pressure
     motion = solve_forces(system, frozen_friction(system.strength, pressure)).motion
     exact = certify(system, motion)
     assert exact is not None
     assert exact.least.multiplier < 0.98 * exact.most.multiplier
-    monkeypatch.setattr("runningbond.limit.certificates.MANY", 0)
-    monkeypatch.setattr("runningbond.limit.certificates.solve_forces", None)  # HiGHS is not asked
+    monkeypatch.setattr("runningbond.limit.certificates.REPAIR_FREEDOMS", 0)
+    monkeypatch.setattr("runningbond.limit.certificates.solve_forces", None)  # HiGHS is not called
     near = certify(system, motion)
     assert near is not None
     assert near.least.multiplier == pytest.approx(exact.least.multiplier, rel=1e-7)
@@ -142,10 +140,8 @@ def test_repaired_certificates_are_those_of_highs(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("name", ["dry", "cohesive", "opening"])
-def test_the_bracket_of_a_huge_wall_is_wider_and_holds_the_multiplier(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """With the size from which walls are huge lowered."""
+def test_bracket_of_huge_wall_contains_multiplier(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the size thresholds of large to huge walls set to 0; the bracket may be as wide as `WIDEST`."""
     scene = wall(name)
     exact = limit(scene).multiplier
     assert exact is not None

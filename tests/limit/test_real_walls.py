@@ -1,4 +1,4 @@
-"""Limit analysis of ties, of a beam on top and of supports that move, against answers by hand."""
+"""Limit analysis with ties, a beam on top and moving supports, against solutions by hand."""
 
 import math
 from typing import Any
@@ -45,7 +45,7 @@ def built(blocks: list[Array], friction: float, load: Load | None = None, **more
 
 
 def collapse(model: str, scene: Scene) -> float:
-    """λ of a scene whose bracket is as narrow as numbers are."""
+    """λ of a scene, whose bracket must be closed to 1e-6."""
     outcome = run_model(model, scene)
     assert outcome.status == "collapse", outcome.message
     assert outcome.multiplier is not None
@@ -53,14 +53,14 @@ def collapse(model: str, scene: Scene) -> float:
     return outcome.multiplier
 
 
-# --- ties ------------------------------------------------------------------------------------------------------
+# --- ties -------------------------------------------------------------------------------------------------------
 
 
 @BOTH
 @pytest.mark.parametrize("friction", [0.1, 0.3, 2.0])
 @pytest.mark.parametrize("pull", [0.0, 0.05, 0.3])
-def test_a_tie_holds_a_block_by_its_yield_force(model: str, friction: float, pull: float) -> None:
-    """Tied to an anchor from its top: λ = min(μ + T/W, (b/2 + h T/W) / (h/2)); pulled the other way it is slack."""
+def test_tie_holds_block_by_its_yield_force(model: str, friction: float, pull: float) -> None:
+    """Tied to an anchor at its top: λ = min(μ + T/W, (b/2 + h T/W) / (h/2)); pushed the other way the tie is slack."""
     tie = [Tie((0.0, HEIGHT), (-1.0, HEIGHT), 1e-4, 2e11, pull * WEIGHT)] if pull else []
     for direction, held in ((1.0, pull), (-1.0, 0.0)):
         scene = built([rectangle(0, 0, WIDTH, HEIGHT)], friction, Load(live=(Lateral((direction, 0.0)),)), ties=tie)
@@ -69,28 +69,28 @@ def test_a_tie_holds_a_block_by_its_yield_force(model: str, friction: float, pul
 
 
 @BOTH
-def test_a_tie_makes_two_columns_topple_as_one(model: str) -> None:
-    """Pushed right, the left column leans on nothing but the tie that ends at the right one: it is short, and slack."""
+def test_tie_makes_two_columns_topple_together(model: str) -> None:
+    """Pushed right, the slender left column topples alone: the tie between the columns shortens, and is slack."""
     columns = [rectangle(0, 0, WIDTH, HEIGHT), rectangle(2, 0, 2 * WIDTH, HEIGHT)]
     slender, wide = WIDTH / HEIGHT, 2 * WIDTH / HEIGHT
     tie = Tie((WIDTH, HEIGHT), (2.0, HEIGHT), 1e-4, 2e11, 100 * WEIGHT)
     for direction, exact in ((1.0, slender), (-1.0, (slender + 2 * wide) / 3)):
-        # To the left the slender column is ahead and pulls the tie, until both lean at once.
+        # Pushed left, the slender column pulls the tie, and both columns topple together.
         scene = built(columns, 5.0, Load(live=(Lateral((direction, 0.0)),)), ties=[tie])
         assert collapse(model, scene) == pytest.approx(exact, rel=1e-7)
 
 
-def test_preload_and_stiffness_of_a_tie_have_no_influence_and_are_said_to_have_none() -> None:
+def test_only_yield_force_of_tie_counts() -> None:
     ends = ((0.0, HEIGHT), (-1.0, HEIGHT))
     ties = [Tie(*ends, 1e-4, 2e11, 100.0), Tie(*ends, 1e-3, 1e9, 100.0, 90.0)]
     found = [limit(built([rectangle(0, 0, WIDTH, HEIGHT)], 1.0, ties=[tie])) for tie in ties]
     assert found[0].multiplier == found[1].multiplier
-    assert "ties count by their yield force alone" in found[0].message
+    assert "ties count only by their yield force" in found[0].message
 
 
 @BOTH
-def test_no_multiple_of_a_load_hangs_on_a_tie(model: str) -> None:
-    """Lifted straight up a block comes off at W and what the tie holds; pressed down it locks as ever."""
+def test_tie_does_not_make_load_unbounded(model: str) -> None:
+    """Lifted, a block comes off at W plus the yield force of its tie; pressed down, it locks as without a tie."""
     tie = Tie((0.25, 0.1), (0.25, -1.5), 1e-4, 2e11, 500.0)
     for force, exact in (([0.0, 1.0], WEIGHT + 500.0), ([0.0, -1.0], None)):
         live = {"kind": "point", "at": [0.25, HEIGHT], "force": force}
@@ -108,7 +108,7 @@ def test_no_multiple_of_a_load_hangs_on_a_tie(model: str) -> None:
 
 
 def test_forces_and_mechanism_with_ties_prove_each_other() -> None:
-    """And the ties that lengthen are at yield, those that shorten slack, the others in between."""
+    """Ties that lengthen yield, those that shorten are slack; stronger ties carry larger loads."""
     walls = [panel(wall__height=1.44, joint__friction=0.9, tie=_ties(pull)) for pull in (20.0, 200.0, 2e4)]
     for scene in walls:
         state = limit_state(equilibrium(scene))
@@ -124,11 +124,11 @@ def _ties(pull: float) -> list[dict[str, Any]]:
     return [{"from": [0.05, 1.41], "to": [-1.0, 0.2]} | size, {"from": [0.05, 1.29], "to": [1.4, 1.35]} | size]
 
 
-# --- the beam --------------------------------------------------------------------------------------------------
+# --- the beam ---------------------------------------------------------------------------------------------------
 
 
 def under_beam(condition: str, friction: float = 5.0, **beam: Any) -> Scene:
-    """One block under a beam without mass that bears 3 W."""
+    """One block under a massless beam that is loaded by 3 W."""
     return panel(
         wall={"block_width": WIDTH, "block_height": HEIGHT, "thickness": THICKNESS, "courses": [[1]]},
         block={"density": DENSITY},
@@ -140,36 +140,36 @@ def under_beam(condition: str, friction: float = 5.0, **beam: Any) -> Scene:
 
 @BOTH
 @pytest.mark.parametrize("at", [0.3, HEIGHT, 2.0])
-def test_a_level_beam_bends_a_wall_double_wherever_it_is_driven(model: str, at: float) -> None:
-    """H = (N + W/2) b / h: the block leans from one corner of the beam to the other of the ground."""
+def test_level_beam_bends_wall_in_double_curvature(model: str, at: float) -> None:
+    """H = (N + W/2) b / h at any height of the drive: the thrust runs between opposite corners of the block."""
     drive = {"force": [1, 0], "at": at}
     assert collapse(model, under_beam("level", drive=drive)) == pytest.approx(3.5 * WEIGHT * WIDTH / HEIGHT, rel=1e-7)
 
 
 @BOTH
-def test_a_free_beam_leans_with_its_wall(model: str) -> None:
-    """H = (N + W) b / (2 h), driven at the wall's top: of a light wall half of what a level beam needs."""
+def test_free_beam_rotates_with_wall(model: str) -> None:
+    """H = (N + W) b / (2 h), driven at the wall's top: for a light wall half of what a level beam needs."""
     drive = {"force": [1, 0], "at": HEIGHT}
     assert collapse(model, under_beam("free", drive=drive)) == pytest.approx(2 * WEIGHT * WIDTH / HEIGHT, rel=1e-7)
 
 
 @BOTH
 @pytest.mark.parametrize("condition", ["free", "level"])
-def test_a_beam_slides_on_its_wall(model: str, condition: str) -> None:
+def test_beam_slides_on_wall(model: str, condition: str) -> None:
     drive = {"force": [1, 0], "at": HEIGHT}
     assert collapse(model, under_beam(condition, 0.2, drive=drive)) == pytest.approx(0.2 * 3 * WEIGHT, rel=1e-7)
 
 
-def test_a_beam_held_at_its_height_locks_the_wall_and_says_what_holds_it() -> None:
-    """Its vertical force is whatever the strut under it needs."""
+def test_beam_at_fixed_height_locks_wall() -> None:
+    """The support provides whatever vertical force the strut under the beam needs, as the message states."""
     for friction in (0.2, 0.6):
         outcome = run_model("limit", under_beam("fixed-height", friction))
         assert outcome.status == "unbounded"
         assert "whatever vertical force" in outcome.message
 
 
-def test_without_dilatancy_a_wall_slides_under_a_beam_that_is_held_at_its_height() -> None:
-    """At μ N with the dead N where the strut from corner to corner slides, μ < b / h; a steeper one does not."""
+def test_wall_slides_without_dilatancy_under_beam_at_fixed_height() -> None:
+    """At μ N with the dead N if the strut from corner to corner slides, i.e. μ < b / h; else undecided."""
     outcome = run_model("limit-nonassociated", under_beam("fixed-height", 0.2))
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(0.2 * 3 * WEIGHT, rel=1e-7)
@@ -179,7 +179,7 @@ def test_without_dilatancy_a_wall_slides_under_a_beam_that_is_held_at_its_height
 
 
 @BOTH
-def test_a_path_is_a_force_along_its_first_move_and_says_so(model: str) -> None:
+def test_drive_path_is_replaced_by_force_in_first_direction(model: str) -> None:
     pushed = collapse(model, under_beam("level"))
     for displacement in ([0.01, 0], [[0, 0.001, -0.001]]):
         outcome = run_model(model, under_beam("level", drive={"displacement": displacement}))
@@ -188,8 +188,8 @@ def test_a_path_is_a_force_along_its_first_move_and_says_so(model: str) -> None:
         assert ("first direction" in outcome.message) == isinstance(displacement[0], list)
 
 
-def test_what_holds_a_beam_balances_its_moments() -> None:
-    """Level: the moment is that of N, half a width from the beam's middle, and of H about its own height."""
+def test_moment_held_by_level_beam() -> None:
+    """The moment of N, half a width from the beam's middle, and of H about the beam's height."""
     outcome = limit(under_beam("level", drive={"force": [1, 0], "at": HEIGHT + 0.1}))
     force = 3.5 * WEIGHT * WIDTH / HEIGHT
     assert outcome.held.ravel() == pytest.approx([3 * WEIGHT * WIDTH / 2 + force * 0.1], rel=1e-7)
@@ -205,15 +205,15 @@ def on_moving(blocks: list[Array], box: tuple[tuple[float, float], tuple[float, 
 
 @BOTH
 @pytest.mark.parametrize("cut", [0.05, 0.2, 0.24])
-def test_ground_that_sinks_under_one_end_of_a_block_bears_it_at_its_far_corner(model: str, cut: float) -> None:
-    """On [0, c] that stays and [c, b] that sinks the block turns about c: λ = (b/2 − c) / (b − c)."""
+def test_sinking_ground_carries_block_at_far_corner(model: str, cut: float) -> None:
+    """If [c, b] sinks and [0, c] stays, the block turns about c: λ = (b/2 − c) / (b − c)."""
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), by=(0.0, -0.02))
     assert collapse(model, scene) == pytest.approx((WIDTH / 2 - cut) / (WIDTH - cut), rel=1e-6, abs=1e-9)
 
 
 @BOTH
 @pytest.mark.parametrize("cut", [0.26, 0.4])
-def test_a_block_whose_weight_is_over_what_stays_does_without_the_rest(model: str, cut: float) -> None:
+def test_block_bridges_sinking_ground(model: str, cut: float) -> None:
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), by=(0.0, -0.02))
     outcome = run_model(model, scene)
     assert outcome.status == "unbounded"
@@ -222,8 +222,8 @@ def test_a_block_whose_weight_is_over_what_stays_does_without_the_rest(model: st
 
 @BOTH
 @pytest.mark.parametrize("width", [0.2, 1e-3])
-def test_a_lintel_on_two_supports_leaves_half_of_its_weight_on_the_one_that_sinks(model: str, width: float) -> None:
-    """Of bearing a and span L: R = W (L/2 − a) / (L − a), half of W on bearings without width."""
+def test_sinking_support_carries_half_of_lintel(model: str, width: float) -> None:
+    """For bearings a and span L: R = W (L/2 − a) / (L − a), half of W on bearings without width."""
     span = 2.0
     grounds = [rectangle(0, -1, width, 1), rectangle(span - width, -1, width, 1)]
     scene = on_moving([rectangle(0, 0, span, 0.3)], ((1, -2), (3, 0.1)), by=(0.0, -0.01), grounds=grounds)
@@ -233,7 +233,7 @@ def test_a_lintel_on_two_supports_leaves_half_of_its_weight_on_the_one_that_sink
 
 
 def portal(*, mirrored: bool = False, **motion: Any) -> Scene:
-    """A lintel 2.0 × 0.3 on two piers 0.4 × 1.5, the right one (or the left) on ground that moves."""
+    """A lintel 2.0 × 0.3 on two piers 0.4 × 1.5; the ground under the right pier (or the left one) moves."""
     blocks = [rectangle(0, 0, 0.4, 1.5), rectangle(1.6, 0, 0.4, 1.5), rectangle(0, 1.5, 2.0, 0.3)]
     box = ((-0.1, -1.0), (0.5, 0.1)) if mirrored else ((1.5, -1.0), (2.1, 0.1))
     return on_moving(blocks, box, **motion)
@@ -243,8 +243,8 @@ PIER, LINTEL = 0.4 * 1.5, 2.0 * 0.3
 
 
 @BOTH
-def test_a_portal_one_of_whose_piers_sinks_hinges_at_the_bearings(model: str) -> None:
-    """The lintel turns about the inner edge of the pier that stays, and lies on the outer edge of the other.
+def test_portal_with_sinking_pier_hinges_at_bearings(model: str) -> None:
+    """The lintel turns about the inner edge of the fixed pier, and rests on the outer edge of the sinking one.
 
     R = W_pier + W_lintel (L/2 − a) / (L − a).
     """
@@ -264,24 +264,22 @@ def test_a_portal_one_of_whose_piers_sinks_hinges_at_the_bearings(model: str) ->
 
 @BOTH
 @pytest.mark.parametrize("by", [(0.0, -0.02), (0.01, 0.0), (0.005, -0.01)])
-def test_a_mirrored_settlement_has_the_mirrored_answer(model: str, by: tuple[float, float]) -> None:
+def test_mirrored_settlement_has_same_multiplier(model: str, by: tuple[float, float]) -> None:
     mirrored = portal(mirrored=True, by=(-by[0], by[1]))
     assert collapse(model, mirrored) == pytest.approx(collapse(model, portal(by=by)), rel=1e-9)
 
 
 @BOTH
 @pytest.mark.parametrize("size", [1e-6, 1.0, 7.0])
-def test_the_size_of_a_settlement_scales_out(model: str, size: float) -> None:
+def test_size_of_settlement_has_no_influence(model: str, size: float) -> None:
     found = collapse(model, portal(by=(0.0, -size)))
     assert found == pytest.approx(collapse(model, portal(by=(0.0, -0.02))), rel=1e-9)
 
 
 @BOTH
 @pytest.mark.parametrize("friction", [0.6, 1.2, 3.0])
-def test_three_blocks_between_abutments_push_as_far_as_friction_or_their_depth_asks(
-    model: str, friction: float
-) -> None:
-    """A flat arch of three blocks b × h on friction alone, one abutment giving way: H = W max(b / h, 1.5 / μ)."""
+def test_flat_arch_thrust_follows_from_depth_or_friction(model: str, friction: float) -> None:
+    """Three blocks b × h held by friction, one abutment gives way: H = W max(b / h, 1.5 / μ)."""
     b, h = 0.4, 0.3
     blocks = [rectangle(k * b, 0, b, h) for k in range(3)]
     grounds = [rectangle(-1, -0.5, 1, 1), rectangle(3 * b, -0.5, 1, 1)]
@@ -290,7 +288,7 @@ def test_three_blocks_between_abutments_push_as_far_as_friction_or_their_depth_a
     exact = max(b / h, 1.5 / friction) / 3
     if model == "limit":
         assert outcome.multiplier == pytest.approx(exact, rel=1e-7)
-    # Without dilatancy the arch may let go earlier; from a larger thrust, never from a smaller one.
+    # Without dilatancy the arch may fall earlier, i.e. at a larger thrust, never at a smaller one.
     elif outcome.status == "collapse":
         assert outcome.lower is not None
         assert outcome.lower >= exact * (1 - 1e-7)
@@ -299,7 +297,7 @@ def test_three_blocks_between_abutments_push_as_far_as_friction_or_their_depth_a
 
 
 def arch(blocks: int, radius: float, depth: float) -> Scene:
-    """Half a ring of voussoirs between two abutments, the right one of which gives way."""
+    """Half a ring of voussoirs between two abutments, of which the right one gives way."""
     angles = np.linspace(math.pi, 0, blocks + 1)
     ring = np.array([np.cos(angles), np.sin(angles)]).T
     inner, outer = (radius - depth / 2) * ring, (radius + depth / 2) * ring
@@ -309,8 +307,8 @@ def arch(blocks: int, radius: float, depth: float) -> Scene:
 
 
 @BOTH
-def test_an_arch_whose_abutment_spreads_hinges_where_its_thrust_is_least(model: str) -> None:
-    """Coulomb: hinges at the crown's top and at the inner edge of the joint of the largest M_j / rise, which is H."""
+def test_arch_with_spreading_abutment_has_smallest_thrust(model: str) -> None:
+    """Coulomb: hinges at the top of the crown and at the inner edge of the joint of largest M_j / rise, which is H."""
     n, radius, depth = 10, 1.0, 0.25
     scene = arch(n, radius, depth)
     inside, top = radius - depth / 2, radius + depth / 2
@@ -332,8 +330,8 @@ def test_an_arch_whose_abutment_spreads_hinges_where_its_thrust_is_least(model: 
 
 @BOTH
 @pytest.mark.parametrize("about", [0.1, 0.0, -1.0])
-def test_ground_that_turns_bears_a_block_at_its_far_corner(model: str, about: float) -> None:
-    """Down to the right, about any point at its level left of it: the same force at the same corner."""
+def test_rotating_ground_carries_block_at_far_corner(model: str, about: float) -> None:
+    """For any centre of rotation left of the block at ground level: the same force at the same corner."""
     cut = 0.1
     scene = on_moving(
         [rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), rotation_angle=-1.0, about=(about, 0.0), friction=2.0
@@ -357,10 +355,8 @@ def test_ground_that_turns_bears_a_block_at_its_far_corner(model: str, about: fl
         ),
     ],
 )
-def test_the_reaction_is_told_in_newtons_and_where_if_not_everywhere(
-    model: str, motion: dict[str, Any], said: str
-) -> None:
-    """W (b/2 − c) / (b − c) of ground that sinks from c on; all of W is lifted, and half of it about the other end."""
+def test_message_states_support_reaction(model: str, motion: dict[str, Any], said: str) -> None:
+    """W (b/2 − c) / (b − c) if ground sinks from c on; W if it is lifted, W/2 if it turns up about the other end."""
     cut = 0.1
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), friction=2.0, **motion)
     message = run_model(model, scene).message
@@ -369,14 +365,14 @@ def test_the_reaction_is_told_in_newtons_and_where_if_not_everywhere(
     assert ("where it moves most" in message) == ("rotation_angle" in motion)
 
 
-def test_ground_that_turns_about_the_corner_that_bears_brings_nothing_down() -> None:
+def test_ground_that_turns_about_loaded_corner_is_bridged() -> None:
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.1, -1), (2, 0.1)), rotation_angle=1.0, about=(WIDTH, 0.0))
     assert limit(scene).status == "unbounded"
 
 
 @pytest.mark.parametrize("clockwise", [-1.0, 1.0])
-def test_ground_that_turns_about_the_middle_of_a_wall_neither_bears_it_nor_is_driven(clockwise: float) -> None:
-    """All of it turns under a symmetric wall, whose weight does no work: what rounding leaves is no force."""
+def test_reaction_of_ground_that_turns_about_middle_is_zero(clockwise: float) -> None:
+    """All ground turns under a symmetric wall whose weight does no work: rounding must not be reported as a force."""
     scene = on_moving(
         [rectangle(0.1 * WIDTH, y, WIDTH, HEIGHT / 3) for y in (0, HEIGHT / 3, 2 * HEIGHT / 3)],
         ((-1, -1), (2, 0.1)),
@@ -389,24 +385,24 @@ def test_ground_that_turns_about_the_middle_of_a_wall_neither_bears_it_nor_is_dr
 
 
 @BOTH
-def test_ground_that_is_lifted_has_to_be_driven(model: str) -> None:
-    """Under one end of a block: λ = −(b/2) / b, for it turns about its other end."""
+def test_lifted_ground_has_to_be_driven(model: str) -> None:
+    """Under one end of a block that turns about its other end: λ = −(b/2) / c."""
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.4, -1), (2, 0.1)), by=(0.0, 0.01), friction=2.0)
     outcome = run_model(model, scene)
     assert outcome.status == "collapse"
-    # It bears at c = 0.4, the corner nearest to the hinge at 0: R c = W b / 2.
+    # The reaction acts at c = 0.4, the lifted point nearest to the hinge at 0: R c = W b / 2.
     assert outcome.multiplier == pytest.approx(-WIDTH / 2 / 0.4, rel=1e-6)
     assert "has to be driven" in outcome.message
 
 
 @BOTH
-def test_a_wall_that_falls_as_it_stands_is_infeasible_before_anything_sinks(model: str) -> None:
+def test_wall_that_falls_before_settlement_is_infeasible(model: str) -> None:
     blocks = [rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)]
     assert run_model(model, on_moving(blocks, ((0.8, -1), (2, 0.1)), by=(0.0, -1.0))).status == "infeasible"
 
 
 @BOTH
-def test_a_wall_without_weight_follows_no_support(model: str) -> None:
+def test_settlement_of_weightless_wall_is_refused(model: str) -> None:
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.1, -1), (2, 0.1)), by=(0.0, -0.02))
     with pytest.raises(SceneError, match="gravity"):
         run_model(model, build_scene_without_weight(scene))
@@ -417,8 +413,8 @@ def build_scene_without_weight(scene: Scene) -> Scene:
     return built([scene.blocks.polygon(0)], 0.6, load)
 
 
-def test_settled_forces_and_mechanism_prove_each_other() -> None:
-    """On a running bond, half of whose ground sinks, with and without cohesion, and with a tie from it."""
+def test_forces_and_mechanism_on_settlement_prove_each_other() -> None:
+    """Running bond on ground half of which sinks: dry, cohesive, with a tie, and with inset contacts."""
     live = {"kind": "settlement", "box": [[0.8, -1], [3, 0.01]], "by": [0.0, -0.01]}
     tie = {"from": [1.4, 0.65], "to": [0.05, 0.65], "area": 1e-4, "young": 2e11, "yield": 100.0}
     for more in ({}, {"joint__cohesion": 500.0}, {"tie": [tie]}, {"joint__inset": 0.004}):
@@ -427,8 +423,8 @@ def test_settled_forces_and_mechanism_prove_each_other() -> None:
         assert max(state.measures.values()) < 1e-9, state.measures
 
 
-def test_the_reaction_is_the_work_of_the_joint_forces_on_the_support() -> None:
-    """Summed from the forces in the outcome, not from the program's multiplier."""
+def test_reaction_is_sum_of_joint_forces_on_support() -> None:
+    """Summed from the forces in the outcome, not taken from the program's multiplier."""
     live = {"kind": "settlement", "box": [[0.8, -1], [3, 0.01]], "by": [0.0, -0.01]}
     scene = panel(load__live=live)
     outcome, system = limit(scene), equilibrium(scene)
@@ -440,10 +436,10 @@ def test_the_reaction_is_the_work_of_the_joint_forces_on_the_support() -> None:
     assert largest_displacement(scene) == pytest.approx(0.01)
 
 
-# --- what is kept -----------------------------------------------------------------------------------------------
+# --- stored results ---------------------------------------------------------------------------------------------
 
 
-def test_pulls_and_held_motions_come_back_from_disk(tmp_path: Any) -> None:
+def test_tie_pulls_and_held_forces_are_stored(tmp_path: Any) -> None:
     outcome = Outcome("scene", "limit", "unbounded", pull=np.array([1.0, 2.0]), held=np.array([[3.0]]))
     save_outcome(outcome, tmp_path)
     found, _ = load_outcome(tmp_path)

@@ -1,4 +1,4 @@
-"""The search for the smallest certified load: what it finds, what it proves, and what it does not depend on."""
+"""Search for the smallest certified load: loads found, proofs of certificates, and invariances."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +28,7 @@ SIZE, CELLS = 2.0, 5
 
 
 def cells(seed: int) -> list[Array]:
-    """Voronoi cells of points on a disturbed grid, that fill a square."""
+    """Voronoi cells of points on a disturbed grid, which fill a square."""
     rng = np.random.default_rng(seed)
     step = SIZE / CELLS
     at = [((i + 0.5 + (j % 2) * 0.5 - 0.25) * step, (j + 0.5) * step) for j in range(CELLS) for i in range(CELLS)]
@@ -46,7 +46,7 @@ def cells(seed: int) -> list[Array]:
 
 
 def rubble(seed: int, *, mirrored: bool = False, shuffled: int | None = None, size: float = 1.0) -> Scene:
-    """Such cells as a dry wall that is pushed to one side."""
+    """Such cells as a dry wall that is pushed sideways."""
     blocks = [size * cell for cell in cells(seed)]
     if mirrored:
         blocks = [(cell * [-1, 1])[::-1] for cell in blocks]
@@ -58,7 +58,7 @@ def rubble(seed: int, *, mirrored: bool = False, shuffled: int | None = None, si
 
 
 def test_more_starts_certify_far_smaller_loads() -> None:
-    """The first start finds the associated load and nothing else; a fifth less is certified as well."""
+    """The first start finds only the associated load; all starts certify one at least a fifth smaller."""
     scene = rubble(3)
     bound = limit(scene).multiplier or 0.0
     one, all_ = limit_nonassociated(scene, starts=1), limit_nonassociated(scene)
@@ -68,26 +68,26 @@ def test_more_starts_certify_far_smaller_loads() -> None:
     assert all_.upper == pytest.approx(bound, rel=1e-6)
 
 
-OPENINGS = {
+REFERENCE_LOADS = {
     ("wall-w4", 0.02): 0.2462,
     ("wall-w6", 0.0): 0.2918,
     ("wall-w6", 0.02): 0.2710,
 }
-"""Loads that another search over random pressures certified, to four digits, with contacts moved in by so many m."""
+"""Loads of walls with openings by inset [m], certified to four digits by another search over random pressures."""
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "inset"), OPENINGS)
+@pytest.mark.parametrize(("name", "inset"), REFERENCE_LOADS)
 def test_rare_mechanisms_of_walls_with_openings_are_found(name: str, inset: float) -> None:
-    """One start in a hundred leads to them; a wall of 146 blocks takes half a minute."""
+    """One start in a hundred finds them; a wall of 146 blocks takes half a minute."""
     outcome = limit_nonassociated(published_scene(name).with_joint(inset=inset))
     assert outcome.lower is not None
-    assert outcome.lower <= OPENINGS[name, inset] + 5e-5
+    assert outcome.lower <= REFERENCE_LOADS[name, inset] + 5e-5
 
 
 @pytest.mark.long
-def test_a_coarse_panel_of_upright_blocks_loses_half_its_load() -> None:
-    """75 blocks, twelve wide and six high, H/L = 2, b/a = 1/4: .0717 to the associated bound, .1391."""
+def test_true_friction_halves_load_of_panel_with_upright_blocks() -> None:
+    """75 blocks, twelve wide and six high, H/L = 2, b/a = 1/4: 0.0717, against an associated bound of 0.1391."""
     panel = rb.Wall.running_bond(
         length=1.44, height=2.88, block_width=0.12, block_height=0.48, thickness=0.12, density=1800.0, friction=0.6
     ).scene
@@ -99,8 +99,8 @@ def test_a_coarse_panel_of_upright_blocks_loses_half_its_load() -> None:
 
 
 @pytest.mark.long
-def test_a_search_ends_after_so_many_programs() -> None:
-    """And after the round in which they were solved; what it found by then is among what a longer one finds."""
+def test_search_ends_after_given_number_of_programs() -> None:
+    """It ends with the round in which they were solved; a longer search finds no larger load."""
     scene = published_scene("wall-w4")
     short, usual = limit_nonassociated(scene, programs=1), limit_nonassociated(scene)
     assert usual.lower is not None
@@ -109,7 +109,7 @@ def test_a_search_ends_after_so_many_programs() -> None:
     assert usual.lower <= short.lower
 
 
-def test_mirrored_shuffled_and_scaled_walls_have_the_same_loads() -> None:
+def test_search_ignores_mirroring_order_and_scale() -> None:
     first = limit_nonassociated(rubble(3), starts=20)
     for other in (rubble(3, mirrored=True, shuffled=1), rubble(3, shuffled=2, size=2.7)):
         again = limit_nonassociated(other, starts=20)
@@ -118,7 +118,7 @@ def test_mirrored_shuffled_and_scaled_walls_have_the_same_loads() -> None:
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_ordered_equations_are_the_same_to_the_last_bit(mirrored: bool) -> None:
+def test_ordered_equations_are_identical_to_last_bit(mirrored: bool) -> None:
     one, other = (
         canonical_order(system).applied(system)
         for system in (equilibrium(rubble(1)), equilibrium(rubble(1, mirrored=mirrored, shuffled=4)))
@@ -129,7 +129,7 @@ def test_ordered_equations_are_the_same_to_the_last_bit(mirrored: bool) -> None:
     assert (one.live == other.live).all()
 
 
-def test_a_motion_of_ordered_equations_is_restored() -> None:
+def test_motion_of_ordered_equations_is_restored() -> None:
     system = equilibrium(rubble(1))
     order = canonical_order(system)
     ordered, motion = order.applied(system), np.random.default_rng(0).normal(size=system.freedoms)
@@ -141,8 +141,8 @@ def test_a_motion_of_ordered_equations_is_restored() -> None:
 
 
 @pytest.mark.parametrize("name", ["rubble", "wall-w3"])
-def test_both_ends_of_every_certificate_drive_its_mechanism(name: str) -> None:
-    """Also where the upper end is the forces of the certificate from which the search came."""
+def test_both_loads_of_certificate_drive_its_mechanism(name: str) -> None:
+    """Also if the upper load comes from the forces of the certificate from which the descent started."""
     system = equilibrium(rubble(3) if name == "rubble" else published_scene(name))
     found = search(system, limit_state(system).forces, 20)
     assert len(found.certificates) > 1
@@ -164,8 +164,8 @@ def test_both_ends_of_every_certificate_drive_its_mechanism(name: str) -> None:
             assert abs(forces.tangential - at_limit)[slides].max(initial=0.0) < 1e-6 * scale
 
 
-def test_descent_goes_below_the_sequence() -> None:
-    """W3, sharp: .35582 from the first start's .36031, and the outcome says how hard it was looked for."""
+def test_descent_finds_smaller_load_than_sequence() -> None:
+    """W3 without inset: 0.35582 from the first start's 0.36031; the message counts starts and programs."""
     outcome = limit_nonassociated(published_scene("wall-w3"), starts=1)
     assert outcome.lower == pytest.approx(0.35582, abs=1e-5)
     assert outcome.multiplier == outcome.lower
@@ -173,15 +173,15 @@ def test_descent_goes_below_the_sequence() -> None:
     assert f"from 1 starts, {(outcome.steps or 0) - 1} linear programs" in outcome.message
 
 
-def test_any_load_is_lower_than_none_at_all() -> None:
+def test_any_load_is_lower_than_infinity() -> None:
     assert is_lower(0.3, np.inf)
     assert not is_lower(np.inf, np.inf)
     assert not is_lower(0.3, 0.3 + 1e-8)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_an_interrupt_keeps_what_was_found(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a walk that is broken off, and of all starts of a round; without a certificate the associated bound."""
+def test_interrupt_keeps_certificates_or_associated_bound(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interrupt in a walk keeps all certificates; one before the first certificate keeps the associated bound."""
 
     def interrupted(*arguments: object) -> None:
         raise KeyboardInterrupt
@@ -197,14 +197,14 @@ def test_an_interrupt_keeps_what_was_found(workers: int, monkeypatch: pytest.Mon
     assert "interrupted; upper is the associated bound" in outcome.message
 
 
-def test_what_is_found_does_not_depend_on_how_many_starts_are_made_at_a_time() -> None:
+def test_result_is_independent_of_number_of_workers() -> None:
     scene = rubble(3)
     one, three = (limit_nonassociated(scene, starts=21, workers=workers) for workers in (1, 3))
     assert (one.lower, one.upper, one.steps, one.message) == (three.lower, three.upper, three.steps, three.message)
     assert (one.motion == three.motion).all()
 
 
-def test_a_search_says_how_far_it_has_come() -> None:
+def test_search_reports_progress() -> None:
     progress, lines = SearchProgress(), []
 
     def observe(found: SearchLog) -> None:
@@ -217,8 +217,8 @@ def test_a_search_says_how_far_it_has_come() -> None:
     assert lines[-1].startswith(f"9 starts, {(outcome.steps or 0) - 1} linear programs")
 
 
-def test_a_program_that_goes_on_from_a_corner_has_the_optimum_of_one_from_nothing() -> None:
-    """Both ends of the loads on one mechanism, after other programs, beside interior point and crossover."""
+def test_warm_started_programs_reach_cold_optimum() -> None:
+    """Both ends of the loads on one mechanism, after other programs, against interior point and crossover."""
     system = equilibrium(published_scene("wall-w3"))
     programs, driving = Programs(system), None
     pressure = limit_state(system).forces.pressure
@@ -236,8 +236,8 @@ def test_a_program_that_goes_on_from_a_corner_has_the_optimum_of_one_from_nothin
         programs.corner(driving, np.ones(len(system.points)), pivots=20)
 
 
-def test_a_simplex_method_that_gives_up_has_shown_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With one corner for each program interior points say what there is: the same loads, or that there are none."""
+def test_interior_point_decides_if_simplex_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With one pivot per program, interior points find the same loads, or that there are none."""
     system = equilibrium(published_scene("wall-w3"))
     patient, hasty, statuses = Programs(system), Programs(system), set()
     pressure = limit_state(system).forces.pressure * np.exp(np.random.default_rng(0).normal(size=len(system.points)))
@@ -245,7 +245,7 @@ def test_a_simplex_method_that_gives_up_has_shown_nothing(monkeypatch: pytest.Mo
         program = patient.frozen(pressure)
         driving = driving_forces(system, program.motion)
         with monkeypatch.context() as patch:
-            patch.setattr("runningbond.limit.programs.FARTHEST", 1)
+            patch.setattr("runningbond.limit.programs.SEQUENCE_PIVOTS", 1)
             patch.setattr("runningbond.limit.programs.MOST_PIVOTS", 1)
             assert hasty.frozen(pressure).multiplier == pytest.approx(program.multiplier, rel=1e-7)
             assert driving is not None
@@ -260,10 +260,10 @@ def test_a_simplex_method_that_gives_up_has_shown_nothing(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("name", ["wall-w2", "wall-w3"])
-def test_the_lowest_and_the_highest_certificate_are_stored_and_proved_by_the_checker(
+def test_checker_proves_stored_lowest_and_highest_certificates(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With forces of either end at the other's load the checker says that they are wrong."""
+    """With wrong forces, motion or load at either end the checker rejects the result."""
     scene = published_scene(name)
     outcome = limit_nonassociated(scene, starts=2)
     save_outcome(outcome, tmp_path / "right", scene=scene)

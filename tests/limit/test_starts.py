@@ -1,4 +1,4 @@
-"""Starts from what is known: in neighbourhoods of certificates, and from their pressures."""
+"""Starts of the search from known certificates: in their neighbourhoods, and from their pressures."""
 
 from collections.abc import Iterator
 
@@ -23,20 +23,20 @@ Known = tuple[Equilibrium, Array, ForceSolution, list[Certificate]]
 
 
 def known(scene: Scene) -> Known:
-    """Equations, places, the associated solution, and what the first start finds, from the lowest up."""
+    """Equations, places, the associated solution, and the first start's certificates in ascending order of load."""
     system, place = ordered(scene)
     associated = solve_forces(system, coulomb(system.strength))
     return system, place, associated, sorted(search(system, associated, 1).certificates, key=least_multiplier)
 
 
 def numbers(origin: Origin) -> range:
-    """Starts of the first round of a way."""
+    """Numbers of the starts in the first round with an origin."""
     return range(ORIGINS.index(origin) * ROUND, (ORIGINS.index(origin) + 1) * ROUND)
 
 
 @pytest.mark.parametrize("name", ["rubble", "wall-w5"])
-def test_neighbourhoods_of_the_first_certificate_hold_smaller_loads(name: str) -> None:
-    """Rubble loses a seventh of its load, W5 a fortieth; each mechanism is one of the wall, driven by its forces."""
+def test_neighbourhoods_of_certificate_contain_smaller_loads(name: str) -> None:
+    """The load of rubble falls by a seventh, that of W5 by a fortieth; each mechanism is certified in the full wall."""
     system, place, associated, before = known(rubble(3) if name == "rubble" else published_scene(name))
     lowest = before[0].least.multiplier
     found: list[Certificate] = []
@@ -44,7 +44,7 @@ def test_neighbourhoods_of_the_first_certificate_hold_smaller_loads(name: str) -
         start = Start(number, associated, before, {}, place)
         start.run(Programs(system))
         found += start.found.certificates
-        assert start.found.programs > start.found.cost > 0  # those of glued walls cost less
+        assert start.found.programs > start.found.cost > 0  # programs of glued walls cost less
     assert min(map(least_multiplier, found)) < (0.98 if name == "wall-w5" else 0.87) * lowest
     for each in found:
         again = certify(system, each.motion)
@@ -53,7 +53,7 @@ def test_neighbourhoods_of_the_first_certificate_hold_smaller_loads(name: str) -
 
 
 def test_pressures_are_scattered_everywhere_or_near_one_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Near one with no radius those at its own joints change alone; beside no places all do."""
+    """With radius zero only the pressures at one block's own joints change; without places all pressures change."""
     system, place, associated, before = known(rubble(3))
     started: list[Array] = []
 
@@ -74,12 +74,12 @@ def test_pressures_are_scattered_everywhere_or_near_one_block(monkeypatch: pytes
                 assert changed[first > 0].all()
             elif changed.any():
                 changes += 1
-                assert set.intersection(*map(set, ends[changed].tolist()))  # one block is at all of them
+                assert set.intersection(*map(set, ends[changed].tolist()))  # all changed joints have a block in common
     assert changes
 
 
 @pytest.mark.parametrize("size", [1.0, 2.7])
-def test_distances_are_from_the_nearer_block_in_sizes_of_the_wall(size: float) -> None:
+def test_distances_are_from_nearer_block_in_wall_sizes(size: float) -> None:
     system, place = ordered(rubble(3, size=size))
     distance = distances(system, place, place[[0]])
     ends = np.stack(sides(system), axis=1)
@@ -89,7 +89,7 @@ def test_distances_are_from_the_nearer_block_in_sizes_of_the_wall(size: float) -
     assert distance == pytest.approx(distances(reference, at, at[[0]]), abs=1e-6)
 
 
-def test_of_a_single_block_nothing_is_far() -> None:
+def test_distances_in_single_block_are_zero() -> None:
     block = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)])
     material = {"block": BlockMaterial(1800.0), "joint": JointMaterial(0.6), "load": Load(live=(Lateral((1.0, 0.0)),))}
     system, place = ordered(build_scene("one", [block], thickness=0.1, **material))  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""A mesh is the wall: the blocks' areas, the joints' lengths, and nothing welded that the joints do not join."""
+"""Meshes of walls: areas of blocks, lengths of joints, no nodes shared between blocks; files; commands."""
 
 import runpy
 import signal
@@ -55,7 +55,7 @@ WALLS = {
 
 
 def edges(triangles: Indices) -> Indices:
-    """Edges of triangles in the sense in which these run, ``(3 nt, 2)``."""
+    """Directed edges of triangles, ``(3 nt, 2)``."""
     return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
 
 
@@ -67,20 +67,20 @@ def areas(mesh: WallMesh) -> Array:
 
 
 def outline_edges(mesh: WallMesh) -> set[tuple[int, int]]:
-    """Edges that one triangle only has, in its sense."""
+    """Edges of only one triangle, in its sense."""
     directed = set(map(tuple, edges(mesh.triangles).tolist()))
     assert len(directed) == 3 * len(mesh.triangles), "two triangles run along an edge in the same sense"
     return {(i, j) for i, j in directed if (j, i) not in directed}
 
 
 def check_mesh(mesh: WallMesh, scene: Scene, gap: float = 0.0) -> None:
-    """All that holds of the mesh of any wall."""
+    """Check what must hold for the mesh of any wall."""
     n_blocks, size = len(scene.blocks), np.abs(scene.blocks.vertices).max()
-    # Blocks are made of positive triangles that fill them.
+    # Triangles have positive areas and fill their blocks.
     area = areas(mesh)
     assert (area > 0).all()
     assert np.bincount(mesh.triangle_block, area) == pytest.approx(scene.blocks.area, rel=1e-12)
-    # No node is shared, and blocks come one after another.
+    # Blocks share no nodes and are numbered consecutively.
     assert (np.diff(mesh.block) >= 0).all()
     assert (np.diff(mesh.triangle_block) >= 0).all()
     assert (mesh.block[mesh.triangles] == mesh.triangle_block[:, None]).all()
@@ -92,7 +92,7 @@ def check_mesh(mesh: WallMesh, scene: Scene, gap: float = 0.0) -> None:
     assert np.array_equal(np.unique(mesh.triangles), np.arange(len(mesh.points)))
     boundary = outline_edges(mesh)
     assert len({i for i, _ in boundary}) == len(boundary)
-    # Joint elements run along their joint on both sides, a's on a and b's on b, and have no area.
+    # Joint elements run along their joint, with nodes on the outlines of a and b, and have zero thickness.
     a0, a1, b1, b0 = mesh.interfaces.T
     assert (np.diff(mesh.joint) >= 0).all()
     assert np.array_equal(np.unique(mesh.joint), np.arange(len(scene.joints)))
@@ -108,11 +108,11 @@ def check_mesh(mesh: WallMesh, scene: Scene, gap: float = 0.0) -> None:
     a, b = scene.joints.block[mesh.joint].T
     across = scene.blocks.centroid[b] - scene.blocks.centroid[a]
     assert (run[:, 1] * across[:, 0] - run[:, 0] * across[:, 1] > 0).all()
-    # The elements of a joint follow each other along it, from one end to the other.
+    # The elements of a joint are ordered from one end to the other.
     follows = np.diff(mesh.joint) == 0
     assert np.array_equal(a1[:-1][follows], a0[1:][follows])
     assert np.array_equal(b1[:-1][follows], b0[1:][follows])
-    # Congruent blocks are meshed alike, node by node.
+    # Congruent blocks have equal meshes, node by node.
     for shape in np.unique(mesh.shape):
         members = np.flatnonzero(mesh.shape == shape)
         spans = [slice(*mesh.first_node[block : block + 2]) for block in members]
@@ -131,13 +131,13 @@ def check_mesh(mesh: WallMesh, scene: Scene, gap: float = 0.0) -> None:
 
 @pytest.mark.parametrize("cells", [1, 2, 3])
 @pytest.mark.parametrize("name", WALLS)
-def test_mesh_is_the_wall(name: str, cells: int) -> None:
+def test_mesh_matches_the_wall(name: str, cells: int) -> None:
     check_mesh(wall_mesh(WALLS[name], cells), WALLS[name])
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3, 5])
-def test_a_full_block_is_two_by_one_cells_of_four_triangles(cells: int) -> None:
-    """2c × c cells: 8 c² triangles of one size, (2c + 1)(c + 1) nodes at cells' corners and 2 c² at their centres."""
+def test_full_block_is_two_by_one_cells_of_four_triangles(cells: int) -> None:
+    """2c × c cells: 8 c² equal triangles, (2c + 1)(c + 1) nodes at the corners of cells and 2 c² at their centres."""
     scene = panel()
     mesh = wall_mesh(scene, cells)
     full = scene.blocks.area[:-1] > 0.01
@@ -151,7 +151,7 @@ def test_a_full_block_is_two_by_one_cells_of_four_triangles(cells: int) -> None:
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3])
-def test_joints_of_half_a_block_have_as_many_elements_as_asked_for(cells: int) -> None:
+def test_half_block_joints_have_one_element_per_cell(cells: int) -> None:
     scene = panel()
     mesh = wall_mesh(scene, cells)
     names = np.array(GROUPS)[joint_group(scene)]
@@ -162,21 +162,21 @@ def test_joints_of_half_a_block_have_as_many_elements_as_asked_for(cells: int) -
     assert {name: int((names == name).sum()) for name in GROUPS[2:]} == {"bed": 132, "head": 66, "base": 6, "inner": 0}
 
 
-def test_joints_of_a_fixed_course_are_its_base() -> None:
+def test_joints_of_a_fixed_course_are_the_base() -> None:
     scene = WALLS["fixed first course"]
     base = joint_group(scene) == GROUPS.index("base")
     assert np.array_equal(base, scene.fixed[scene.joints.block].any(axis=1))
     assert base.sum() == 12
 
 
-def test_cracks_inside_blocks_are_a_group_of_their_own() -> None:
+def test_inner_joints_are_a_separate_group() -> None:
     scene = WALLS["cracked"]
     inner = joint_group(scene) == GROUPS.index("inner")
     assert np.array_equal(inner, scene.joints.inner)
     assert inner.sum() == 66
 
 
-def test_ground_has_nodes_at_its_corners_and_joints_only() -> None:
+def test_ground_has_nodes_only_at_its_corners_and_joints() -> None:
     scene = panel()
     mesh = wall_mesh(scene, 2)
     ground = mesh.points[mesh.first_node[-2] :]
@@ -208,13 +208,13 @@ def test_mesh_does_not_depend_on_the_unit_of_length(scale: float) -> None:
     assert np.array_equal(scaled.points, scale * mesh.points)
 
 
-def test_the_same_wall_gives_the_same_mesh() -> None:
+def test_meshing_is_deterministic() -> None:
     first, second = wall_mesh(WALLS["off the lattice"], 2), wall_mesh(WALLS["off the lattice"], 2)
     assert np.array_equal(first.points, second.points)
     assert np.array_equal(first.triangles, second.triangles)
 
 
-def test_arrays_of_a_mesh_cannot_be_written() -> None:
+def test_arrays_of_a_mesh_are_read_only() -> None:
     mesh = wall_mesh(WALLS["one block"])
     for name, array in vars(mesh).items():
         assert not array.flags.writeable, name
@@ -245,7 +245,7 @@ GROUND_OF_BLOCKS = np.array([[-0.5, -0.2], [1.5, -0.2], [1.5, 0.0], [-0.5, 0.0]]
 
 
 def blocks_with_inclined_heads(seed: int) -> list[Array]:
-    """Courses on [0, 1] of blocks whose head joints lean either way."""
+    """Courses on [0, 1] of blocks with randomly inclined head joints."""
     random = np.random.default_rng(seed)
     height = random.uniform(0.05, 0.5)
     blocks = []
@@ -261,7 +261,7 @@ def blocks_with_inclined_heads(seed: int) -> list[Array]:
 
 @pytest.mark.parametrize("angle", [0.0, 0.3])
 @pytest.mark.parametrize("seed", range(5))
-def test_irregular_blocks_are_meshed_as_they_are(seed: int, angle: float) -> None:
+def test_mesh_of_irregular_blocks(seed: int, angle: float) -> None:
     blocks = [turned(block, angle) for block in blocks_with_inclined_heads(seed)]
     scene = built(blocks, turned(GROUND_OF_BLOCKS, angle))
     for cells in (1, 3):
@@ -269,8 +269,8 @@ def test_irregular_blocks_are_meshed_as_they_are(seed: int, angle: float) -> Non
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_gaps_that_count_as_contact_stay_in_the_mesh(seed: int) -> None:
-    """Corners off by less than the contact tolerance: blocks keep their outlines, nodes face each other across gaps."""
+def test_gaps_within_contact_tolerance_stay_in_the_mesh(seed: int) -> None:
+    """Corners displaced by less than the contact tolerance: outlines stay, and nodes face each other across gaps."""
     blocks = blocks_with_inclined_heads(seed)
     random = np.random.default_rng(seed)
     off = 0.4 * built(blocks, GROUND_OF_BLOCKS).blocks.tolerance
@@ -281,8 +281,8 @@ def test_gaps_that_count_as_contact_stay_in_the_mesh(seed: int) -> None:
     assert np.hypot(*side.T).min() > 2 * scene.blocks.tolerance, "a gap has made a sliver"
 
 
-def test_a_drawing_is_meshed_whatever_its_blocks(tmp_path: Path) -> None:
-    """A triangle, a pentagon and an arch-like joint, drawn in millimetres, in either sense."""
+def test_mesh_of_a_drawing_with_various_blocks(tmp_path: Path) -> None:
+    """A triangle, a pentagon and an inclined joint, drawn in millimetres, clockwise and counter-clockwise."""
     outlines = [
         GROUND,
         [(0.0, 0.0), (0.0, 100.0), (200.0, 130.0), (200.0, 0.0)],
@@ -295,12 +295,12 @@ def test_a_drawing_is_meshed_whatever_its_blocks(tmp_path: Path) -> None:
     for cells in (1, 2, 4):
         mesh = wall_mesh(scene, cells)
         check_mesh(mesh, scene)
-        # Sides without a joint are divided too: no side is longer than the blocks' own measure asks for.
+        # Sides without a joint are divided too: no edge is longer than the block's target size.
         side = np.array([mesh.points[j] - mesh.points[i] for i, j in outline_edges(mesh) if mesh.block[i] < 3])
         assert np.hypot(*side.T).max() < 1.5 * np.sqrt(scene.blocks.area[:-1].max() / 2) / cells
 
 
-def test_congruent_blocks_are_one_shape_whatever_corner_they_are_drawn_from() -> None:
+def test_congruent_blocks_share_a_shape_for_any_first_corner() -> None:
     brick = np.array([[0.0, 0.0], [0.24, 0.0], [0.24, 0.06], [0.0, 0.06]])
     scene = built([brick, np.roll(brick, 1, axis=0) + [0, 0.06], np.roll(brick, 2, axis=0) + [0, 0.12]])
     mesh = wall_mesh(scene)
@@ -308,19 +308,19 @@ def test_congruent_blocks_are_one_shape_whatever_corner_they_are_drawn_from() ->
     check_mesh(mesh, scene)
 
 
-def test_a_small_block_does_not_refine_a_large_one_beyond_their_joint() -> None:
+def test_small_block_refines_a_large_one_only_at_their_joint() -> None:
     large = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
     small = np.array([[5.0, 10], [5.1, 10], [5.1, 10.1], [5, 10.1]])
     scene = built([large, small])
     mesh = wall_mesh(scene)
     check_mesh(mesh, scene)
     assert (mesh.triangle_block == 0).sum() < 100
-    # Their joint is divided as the small one asks, 0.1 / (0.1 / √2 / 4) = 5.7.
+    # The small block's size determines the elements of their joint: 0.1 / (0.1 / √2 / 4) = 5.7.
     assert (wall_mesh(scene, 4).joint == np.argmin(scene.joints.length)).sum() == 6
 
 
-def test_rounding_does_not_decide_how_blocks_are_divided() -> None:
-    """Blocks of 0.75 widths are 1.5 cells long, and this in any place: lengths come out as 0.18 ± 1e-16."""
+def test_rounding_does_not_change_the_number_of_cells() -> None:
+    """Blocks of 0.75 widths are 1.5 cells long; their lengths are 0.18 ± 1e-16, and all must be divided equally."""
     scene = courses([[0.75] * 7] * 4, width=0.24, height=0.06)
     assert len(set(scene.joints.length.tolist())) > 2
     assert set(wall_mesh(scene).shape[:-1].tolist()) == {0}
@@ -329,7 +329,7 @@ def test_rounding_does_not_decide_how_blocks_are_divided() -> None:
 # --- gmsh ----------------------------------------------------------------------------------------------------
 
 
-def test_gmsh_is_left_as_it_was_found() -> None:
+def test_gmsh_is_finalized_after_meshing() -> None:
     import gmsh
 
     wall_mesh(WALLS["door"])
@@ -339,8 +339,8 @@ def test_gmsh_is_left_as_it_was_found() -> None:
     assert not gmsh.isInitialized()
 
 
-def test_ctrl_c_stays_with_python() -> None:
-    """gmsh's own handling would end the process on the spot, half-written files and all."""
+def test_gmsh_session_keeps_pythons_sigint_handler() -> None:
+    """gmsh's own handler would end the process at once and leave half-written files."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with gmsh_session():
@@ -349,8 +349,8 @@ def test_ctrl_c_stays_with_python() -> None:
         signal.signal(signal.SIGINT, before)
 
 
-def test_sigterm_stays_with_python() -> None:
-    """gmsh takes it at its start; the process would end where it meshes and ever after, with nothing kept."""
+def test_gmsh_session_keeps_pythons_sigterm_handler() -> None:
+    """gmsh replaces it on initialization; SIGTERM would end the process, during and after meshing, without cleanup."""
     said = """
 import signal
 import subprocess
@@ -365,7 +365,7 @@ signal.raise_signal(signal.SIGTERM)
     assert (done.returncode, done.stdout) == (0, "heard\nheard\n")
 
 
-def test_a_session_of_the_callers_own_is_not_ended() -> None:
+def test_open_gmsh_session_of_the_caller_is_kept() -> None:
     import gmsh
 
     gmsh.initialize(interruptible=False, readConfigFiles=False)
@@ -380,19 +380,19 @@ def test_a_session_of_the_callers_own_is_not_ended() -> None:
 
 
 @pytest.mark.parametrize(("cells", "fault"), [(0, "at least 1"), (-2, "at least 1"), (400, "more than 10000000")])
-def test_cells_that_make_no_mesh_are_refused(cells: int, fault: str) -> None:
+def test_invalid_cells_are_refused(cells: int, fault: str) -> None:
     with pytest.raises(SceneError, match=fault):
         wall_mesh(panel(), cells)
 
 
 # --- files ---------------------------------------------------------------------------------------------------
 
-FILED = ("panel", "fixed first course", "off the lattice", "cracked", "one block")
+WRITTEN = ("panel", "fixed first course", "off the lattice", "cracked", "one block")
 
 
-@pytest.mark.parametrize("name", FILED)
-def test_gmsh_reads_what_was_written(name: str, tmp_path: Path) -> None:
-    """Coordinates to the last bit; every group with its own elements."""
+@pytest.mark.parametrize("name", WRITTEN)
+def test_written_mesh_is_read_by_gmsh(name: str, tmp_path: Path) -> None:
+    """Coordinates are exact; every group has its own elements."""
     scene, path = WALLS[name], tmp_path / "wall.msh"
     mesh = wall_mesh(scene, 2)
     write_mesh(mesh, scene, path)
@@ -420,9 +420,9 @@ def test_gmsh_reads_what_was_written(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", [".msh", ".vtu"])
-@pytest.mark.parametrize("name", FILED)
-def test_meshio_reads_what_was_written(name: str, suffix: str, tmp_path: Path) -> None:
-    """Coordinates to the last bit; block, joint and group of every element."""
+@pytest.mark.parametrize("name", WRITTEN)
+def test_written_mesh_is_read_by_meshio(name: str, suffix: str, tmp_path: Path) -> None:
+    """Coordinates are exact; block, joint and group of every element agree."""
     scene, path = WALLS[name], tmp_path / f"wall{suffix}"
     mesh = wall_mesh(scene, 2)
     write_mesh(mesh, scene, path)
@@ -446,8 +446,8 @@ def test_meshio_reads_what_was_written(name: str, suffix: str, tmp_path: Path) -
         assert (read.cell_data_dict["block"]["quad"] == -1).all()
 
 
-def test_scikit_fem_reads_what_was_written(tmp_path: Path) -> None:
-    """As many pieces as blocks, each bounded by its own outline, and the groups as subdomains."""
+def test_written_mesh_is_read_by_scikit_fem(tmp_path: Path) -> None:
+    """Its boundary is the outlines of all blocks, and the groups are subdomains."""
     scene, path = WALLS["door"], tmp_path / "wall.msh"
     mesh = wall_mesh(scene, 2)
     write_mesh(mesh, scene, path)
@@ -462,8 +462,8 @@ def test_scikit_fem_reads_what_was_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", [".msh", ".vtu"])
-def test_a_file_is_whole_or_as_it_was(suffix: str, tmp_path: Path) -> None:
-    """A disk that fills up, here a limit on the size of files: exit code 2, one line, the old file untouched."""
+def test_failed_write_leaves_the_old_file(suffix: str, tmp_path: Path) -> None:
+    """For a full disk, here simulated by a limit on file size: exit code 2, one line, the old file unchanged."""
     path = tmp_path / f"wall{suffix}"
     path.write_text("before")
     lines = (
@@ -521,10 +521,10 @@ def test_command_refuses_in_one_line(
     assert not list(tmp_path.iterdir())
 
 
-def test_missing_libraries_are_one_line(
+def test_missing_libraries_are_reported_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """On a bare system the wheel of gmsh finds no libGLU and raises OSError on import."""
+    """On a minimal system the wheel of gmsh does not find libGLU and raises OSError on import."""
     fault = "libGLU.so.1: cannot open shared object file: No such file or directory"
     (tmp_path / "gmsh.py").write_text(f"raise OSError({fault!r})")
     monkeypatch.syspath_prepend(tmp_path)

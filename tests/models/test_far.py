@@ -1,4 +1,4 @@
-"""Models that are asked to follow walls through finite displacements."""
+"""Models at finite displacements."""
 
 from dataclasses import replace
 from typing import Any
@@ -10,8 +10,8 @@ from runningbond.models.far import going_far
 from runningbond.scene import SceneError
 
 
-def test_a_model_that_goes_far_is_the_same_with_a_distance() -> None:
-    """What it is asked for reaches it; where small displacements are asked for it is as it was."""
+def test_going_far_passes_displacements_and_distance() -> None:
+    """The settings are passed to the model; for small displacements the model is unchanged."""
     asked: list[dict[str, Any]] = []
 
     def solve(*_: Any, **keys: Any) -> Any:
@@ -36,7 +36,7 @@ def test_a_model_that_goes_far_is_the_same_with_a_distance() -> None:
         ("limit", "finite", None, "displacements = 'finite': must be \"small\" for limit; "),
     ],
 )
-def test_displacements_that_a_model_does_not_follow_are_refused(
+def test_unsupported_displacements_are_refused(
     name: str, displacements: str, distance: float | None, said: str
 ) -> None:
     with pytest.raises(SceneError) as refused:

@@ -1,4 +1,4 @@
-"""The models by their names."""
+"""The registry of models by name."""
 
 from functools import partial
 from importlib import import_module
@@ -9,8 +9,8 @@ from runningbond.models import MODELS
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_what_a_model_imports_when_it_is_wanted_is_there(name: str) -> None:
-    """Modules that are slow to import are named by strings, which a type checker does not read."""
+def test_lazily_imported_functions_of_models_exist(name: str) -> None:
+    """Modules that are slow to import are named by strings, which a type checker does not check."""
     model = MODELS[name]
     late = [each for each in (model.solve, model.observer, model.progress) if isinstance(each, partial)]
     assert all(callable(getattr(import_module(each.args[0]), each.args[1])) for each in late)

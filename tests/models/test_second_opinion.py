@@ -1,4 +1,4 @@
-"""Soft blocks beside rigid ones: where both fall at one load, where not, and what is said then."""
+"""Soft blocks compared with rigid blocks: equal limit loads, different ones, and what the message reports."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,24 +24,24 @@ def never() -> Outcome:
     raise AssertionError("asked though there is no need")
 
 
-def test_a_bracket_that_rigid_blocks_share_stays_as_it_is() -> None:
+def test_bracket_shared_with_rigid_blocks_is_unchanged() -> None:
     found = beside_others(bracket(0.50, 0.51), lambda: bracket(0.51, 0.52), never)
     assert (found.lower, found.upper, found.message) == (0.50, 0.51, "found")
     assert found.steps == 20
 
 
 @pytest.mark.parametrize("rigid", [(0.45, 0.46), (0.55, 0.56)])
-def test_where_rigid_blocks_fall_elsewhere_the_finer_mesh_is_taken_in(rigid: tuple[float, float]) -> None:
+def test_bracket_includes_finer_mesh_if_rigid_blocks_differ(rigid: tuple[float, float]) -> None:
     found = beside_others(bracket(0.50, 0.51), lambda: bracket(*rigid), lambda: bracket(0.46, 0.47))
     assert (found.lower, found.upper) == (0.46, 0.51)
-    assert found.multiplier == pytest.approx(0.465)  # found by one of them, and the smaller
+    assert found.multiplier == pytest.approx(0.465)  # the smaller of the two limit loads
     assert found.steps == 30
     assert "forces are those of blocks as they are" in found.message
     for loads in ("0.5000–0.5100", "0.4600–0.4700", f"{rigid[0]:.4f}–{rigid[1]:.4f}"):
         assert loads in found.message
 
 
-def test_what_others_cannot_answer_is_said_and_changes_no_bracket() -> None:
+def test_undecided_comparison_is_reported_and_changes_no_bracket() -> None:
     lost = replace(bracket(0.4, 0.6), status="undecided", multiplier=None, message="the budget ran out")
     found = beside_others(bracket(0.50, 0.51), lambda: lost, never)
     assert (found.lower, found.upper) == (0.50, 0.51)
@@ -52,19 +52,19 @@ def test_what_others_cannot_answer_is_said_and_changes_no_bracket() -> None:
     assert beside_others(lost, never, never) is lost
 
 
-def test_a_wall_that_locks_does_not_fall_by_what_it_gives_elastically() -> None:
-    """Soft blocks under an inclined force within the cone of friction move by a twentieth of their height at rest."""
+def test_elastic_displacement_of_locking_wall_is_not_collapse() -> None:
+    """Soft blocks under an inclined force inside the friction cone move by 1/20 of their height and come to rest."""
     joint = {"friction": 0.68, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     live = {"kind": "point", "at": [0.6, 0.8], "force": [0.3, -1.0]}
     wall = {"wall__thickness": 0.25, "block": {"density": 2000.0, "young": 7.5e8}, "joint": joint, "load__live": live}
     scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5]], width=0.4, height=0.4, **wall)
     outcome = fem(scene, 0.2)
     assert outcome.status == "unbounded", outcome.message
-    assert "it bore every load up to the largest, and joint forces balance any multiple" in outcome.message
+    assert "it carried every load tried, and joint forces balance any multiple" in outcome.message
 
 
-def test_published_blocks_are_stiff_and_stone_between_thin_mortar_is_soft() -> None:
-    """k_n h / (k_n h + E) with h = 175 mm and 10 mm of mortar of 1 GPa that cannot spread along the joint."""
+def test_published_blocks_are_stiff_and_stone_in_thin_mortar_is_soft() -> None:
+    """k_n h / (k_n h + E) with h = 175 mm and 10 mm of mortar of 1 GPa, confined along the joint."""
     for case in PUBLISHED:
         assert not asks_others(published_scene(case.name), {})
     column = 1e9 / (1 - 0.2**2) / 0.01 * 0.175
@@ -76,8 +76,8 @@ def test_published_blocks_are_stiff_and_stone_between_thin_mortar_is_soft() -> N
         assert not asks_others(wall, {"cells": 2})
 
 
-def test_a_beam_is_none_of_the_blocks_that_make_a_wall_soft() -> None:
-    """Nor is what it lies on one of their beds: of another height, it would be as soft as masonry that high."""
+def test_beam_does_not_count_in_block_compliance() -> None:
+    """Nor does its joint: with another block height, the beam would count as masonry of that height."""
     joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     beams: list[dict[str, Any]] = [{}, {"beam": {"height": 0.1}}]
     alone, under = (courses([[1, 1], [0.5, 1, 0.5]], joint=joint, block__young=2e9, **beam) for beam in beams)
@@ -85,8 +85,8 @@ def test_a_beam_is_none_of_the_blocks_that_make_a_wall_soft() -> None:
     assert block_compliance(under) == pytest.approx(block_compliance(alone), rel=1e-12)
 
 
-def test_blocks_are_as_soft_as_those_that_the_wall_has() -> None:
-    """A modulus that no block of the wall has asks nobody; one that some have does, wherever it is described."""
+def test_block_compliance_counts_used_materials_only() -> None:
+    """A Young's modulus that no block has requires no comparison; one that some blocks have does, in any table."""
     changes: dict[str, Any] = {"wall__thickness": 0.25, "joint": {"friction": 0.6}, "load__live": {"kind": "lateral"}}
     changes["joint"] |= {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
     for default, other, box, soft in ((2e9, 1e12, 9, False), (1e12, 2e9, 9, True), (1e12, 2e9, 0.4, True)):
@@ -98,8 +98,8 @@ def test_blocks_are_as_soft_as_those_that_the_wall_has() -> None:
 
 
 @pytest.mark.long
-def test_a_coarse_mesh_that_leads_a_soft_wall_astray_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """55 blocks of 10 GPa, contacts 20 mm in: one cell in half a block ends 3 % above rigid blocks, three do not."""
+def test_error_of_coarse_mesh_on_soft_wall_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    """55 blocks of 10 GPa, contacts inset 20 mm: one cell per half block gives 3 % above rigid blocks, three do not."""
     wall = published_scene("wall-w4").with_joint(inset=0.02).with_block(young=1e10)
     asked: list[Outcome] = []
 

@@ -1,4 +1,4 @@
-"""Settings of models and of responses: out of range they are refused by name, before anything runs."""
+"""Invalid settings of models and responses are refused by name, before anything runs."""
 
 from typing import Any
 
@@ -48,10 +48,10 @@ def test_settings_out_of_range_are_refused(model: str, setting: str, value: Any,
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
 @pytest.mark.parametrize("setting", ["collapse", "first_step", "budget", "displacements"])
-def test_settings_of_load_steps_mean_nothing_where_the_ground_moves(model: str, setting: str) -> None:
+def test_load_step_settings_are_refused_for_ground_motion(model: str, setting: str) -> None:
     given: dict[str, Any] = {setting: 1}
     scene = panel(block__young=1e10, load__live=None, load__history=PULSE)
-    with pytest.raises(SceneError, match=f"model {model}: {setting} = .*: is not taken where the ground moves"):
+    with pytest.raises(SceneError, match=f"model {model}: {setting} = .*: is not supported where the ground moves"):
         run_model(model, scene, **given)
 
 
@@ -67,35 +67,35 @@ def test_settings_of_load_steps_mean_nothing_where_the_ground_moves(model: str, 
         ({"scene": 3}, "scene = 3: is not a setting of a response"),
     ],
 )
-def test_settings_of_a_response_are_refused_before_it_is_followed(settings: dict[str, Any], said: str) -> None:
+def test_invalid_response_settings_are_refused(settings: dict[str, Any], said: str) -> None:
     with pytest.raises(SceneError, match=said):
         respond("dem-dynamic", panel(load__live=None, load__history=PULSE), **settings)
 
 
 @pytest.mark.parametrize("model", ["limit", "dem-static", "fem"])
-def test_what_is_to_look_on_is_a_function(model: str) -> None:
+def test_observer_must_be_a_function(model: str) -> None:
     with pytest.raises(SceneError, match="observe = 3: must be a function"):
         run_model(model, panel(block__young=1e10), observe=3)  # type: ignore[arg-type]
 
 
-def test_a_law_of_ones_own_is_read_by_the_models_that_are_handed_it() -> None:
+def test_all_models_but_homog_accept_custom_laws() -> None:
     assert [name for name, model in MODELS.items() if "joint.law" not in model.reads] == ["homog"]
 
 
-def test_what_is_no_model_or_no_outcome_is_told() -> None:
+def test_invalid_model_or_outcome_is_refused() -> None:
     with pytest.raises(SceneError, match=r"model = \['limit'\]: must be one of"):
         run_model(["limit"], panel())  # type: ignore[arg-type]
     with pytest.raises(SceneError, match="model mine = 0.3: must return an Outcome"):
         run_model(Model("mine", "a number", lambda scene, tolerance: 0.3, DRY), panel())  # type: ignore[arg-type, return-value]
 
 
-def test_a_model_does_not_read_the_letters_of_a_word() -> None:
+def test_single_string_instead_of_names_is_refused() -> None:
     for name in ("reads", "parameters", "takes"):
         with pytest.raises(TypeError, match=f"{name} of a model must be several words, not 'joint.friction'"):
             Model("mine", "a number", print, **{"reads": DRY, name: "joint.friction"})  # type: ignore[arg-type]
 
 
-def test_dead_loads_that_are_no_weights_are_told_of_where_the_ground_tilts() -> None:
+def test_message_on_dead_point_loads_under_tilt() -> None:
     dead = {"kind": "point", "at": [0.0, 0.72], "force": [0, -100]}
     for tilted, loads in ((True, {"kind": "tilt"}), (False, {"kind": "lateral"})):
         message = run_model("limit", panel(load__live=loads, load__dead=dead)).message
@@ -103,8 +103,8 @@ def test_dead_loads_that_are_no_weights_are_told_of_where_the_ground_tilts() -> 
 
 
 @pytest.mark.parametrize("ask", [limit, limit_nonassociated, homog, dem_static, dem_dynamic, fem, *VIBRATIONS])
-def test_a_wall_in_place_of_its_scene_is_refused_by_name(ask: Any) -> None:
-    """It was an error of an attribute that a wall has not, in the middle of a model."""
+def test_wall_instead_of_scene_is_refused(ask: Any) -> None:
+    """This once raised an AttributeError in the middle of a model."""
     for other in (Wall.running_bond(**PANEL), "panel-01"):
         with pytest.raises(SceneError, match=r"scene = .*: must be a Scene: of a Wall it is wall\.scene"):
             ask(other)

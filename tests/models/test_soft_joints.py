@@ -1,4 +1,4 @@
-"""Joints that give much: models that follow a wall say so, and do not take a sway for a fall."""
+"""Soft joints: models report large elastic displacements and do not take swaying for collapse."""
 
 from typing import Any
 
@@ -24,8 +24,8 @@ from tests.walls import courses, panel
         *at_length(("dem-dynamic", 1e6, True)),
     ],
 )
-def test_joints_soft_in_shear_are_told(model: str, stiffness: float, said: bool) -> None:
-    """Slip λ ρ g H / k_s of a course adds up over the height: to 0.2 of one with 1 MPa/m, to nothing with 1 GPa/m."""
+def test_joints_soft_in_shear_are_reported(model: str, stiffness: float, said: bool) -> None:
+    """Slip λ ρ g H / k_s of the courses adds up: to 0.2 course heights at 1 MPa/m, and to nothing at 1 GPa/m."""
     joint = {"friction": 0.6, "normal_stiffness": 2e10, "shear_stiffness": stiffness}
     scene = panel(wall__length=0.96, wall__height=0.72, joint=joint)
     message = run_model(model, scene, 0.05).message
@@ -34,10 +34,10 @@ def test_joints_soft_in_shear_are_told(model: str, stiffness: float, said: bool)
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 @pytest.mark.parametrize(("young", "said"), [(1e9, True), (2.1e11, False)])
-def test_a_wall_that_has_turned_far_on_its_tie_is_told(model: str, young: float, said: bool) -> None:
-    """A block 0.5 m wide, held at its top by 3 m of 10 mm²: at 3 kN they are longer by 0.9 m, or, of steel, 4 mm.
+def test_large_rotation_on_soft_tie_is_reported(model: str, young: float, said: bool) -> None:
+    """A block 0.5 m wide, held at its top by a tie of 3 m and 10 mm²: at 3 kN it is 0.9 m longer, or 4 mm if of steel.
 
-    At small displacements it falls at (3 kN h + W b / 2) / h all the same, 0.9 m = 1.8 b from where it stood.
+    At small displacements the limit load is (3 kN h + W b / 2) / h in both cases, also after 0.9 m = 1.8 b.
     """
     scene = courses(
         [[1]],
@@ -53,17 +53,17 @@ def test_a_wall_that_has_turned_far_on_its_tie_is_told(model: str, young: float,
     assert ("of its smaller side, beyond small displacements" in outcome.message) == said
 
 
-def test_what_slips_far_at_rest_is_not_soft() -> None:
-    """A wall without weight slips by a block's height as the load grows, on joints that give by a hundredth of it."""
+def test_large_slip_at_rest_is_not_reported_as_soft() -> None:
+    """A weightless wall slips by a block's height as the load grows, on joints that deform by 1/100 of it."""
     assert "too soft" not in run_model("dem-static", published_scene("point-load-4"), 0.05).message
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", *at_length("fem")])
 @pytest.mark.parametrize(("count", "height", "stiffness"), [(20, 1.0, 1e9), (40, 0.25, 1e9), (40, 1.0, 1.04e11)])
-def test_a_slender_stack_falls_when_it_overturns_and_not_as_it_sways(
+def test_slender_stack_collapses_by_overturning_not_by_swaying(
     model: str, count: int, height: float, stiffness: float
 ) -> None:
-    """λ = b / (n h) is exact of small displacements, though the stack sways by up to a block's height on the way."""
+    """λ = b / (n h) is exact for small displacements, although the stack sways by up to a block's height before."""
     stack = rb.Wall.courses(
         [[1]] * count,
         block_width=0.5,
@@ -83,8 +83,8 @@ def test_a_slender_stack_falls_when_it_overturns_and_not_as_it_sways(
 
 
 @pytest.mark.parametrize("name", ["panel-04", "panel-10", "point-load-2", "wall-w4"])
-def test_what_a_wall_gives_is_the_motion_of_its_joints_resultants(name: str) -> None:
-    """Independent routes: springs at Gauss points here, the joints' resultants in the published static solver."""
+def test_elastic_displacement_agrees_with_resultant_joints(name: str) -> None:
+    """Independent methods: springs at Gauss points here, joint resultants in the published static solver."""
     scene = published_scene(name).with_block(young=None)
     wall = resultant_wall(scene)
     motion = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), 0.3 * wall.live)
@@ -94,8 +94,8 @@ def test_what_a_wall_gives_is_the_motion_of_its_joints_resultants(name: str) -> 
 
 
 @pytest.mark.parametrize("stiffness", [1e9, *at_length(1e10, 1e12)])
-def test_a_slender_pier_bears_as_much_on_soft_joints(stiffness: float) -> None:
-    """Sixty courses, which sway by two heights of a block on the softest; above `limit` nothing stands."""
+def test_limit_load_of_slender_pier_does_not_depend_on_joint_stiffness(stiffness: float) -> None:
+    """Sixty courses, swaying by two block heights on the softest joints; `limit` is an upper bound."""
     pier = rb.Wall.running_bond(
         length=0.5,
         height=6.0,
@@ -114,8 +114,8 @@ def test_a_slender_pier_bears_as_much_on_soft_joints(stiffness: float) -> None:
     assert 0.99 * bound < result.lower <= bound
 
 
-def test_what_gives_at_finite_displacements_is_followed_and_not_beyond_them() -> None:
-    """A block on joints of 1 MPa/m sinks by 4 mm and leans as it is pushed: small displacements say that it is soft."""
+def test_soft_joints_are_not_reported_at_finite_displacements() -> None:
+    """A block on joints of 1 MPa/m sinks by 4 mm and leans under the push: reported only for small displacements."""
     joint = {"friction": 1.4, "normal_stiffness": 1e6, "shear_stiffness": 4e5}
     scene = courses([[1]], 0.06, 0.24, joint=joint)
     far: dict[str, Any] = {"displacements": "finite", "distance": 0.05}

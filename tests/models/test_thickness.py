@@ -1,4 +1,4 @@
-"""Blocks with a thickness of their own, as walls have that are thicker below than above."""
+"""Blocks with individual thicknesses, as in walls that are thicker below than above."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,7 +34,7 @@ PATTERN: list[list[float]] = [[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]]
 
 
 def stepped(*, lower: float, upper: float, live: Any, **joint: Any) -> rb.Wall:
-    """A stone on a stone, of two thicknesses."""
+    """A block on a block of another thickness."""
     return rb.Wall.courses(
         [[1], [1]],
         block_width=WIDTH,
@@ -50,8 +50,8 @@ def stepped(*, lower: float, upper: float, live: Any, **joint: Any) -> rb.Wall:
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize(("lower", "upper"), [(THICK, THIN), (THIN, THICK)])
-def test_a_joint_is_as_thick_as_the_thinner_of_its_blocks(model: str, lower: float, upper: float) -> None:
-    """Lifted off its bed a stone takes f_t L t and its own weight, which is that of its own thickness."""
+def test_joint_has_thickness_of_thinner_block(model: str, lower: float, upper: float) -> None:
+    """Uplift of the upper block takes f_t L t and its weight, which depends on its own thickness."""
     lift = {"kind": "point", "at": [WIDTH / 2, 2 * HEIGHT], "force": [0.0, 1.0]}
     wall = stepped(lower=lower, upper=upper, live=lift, friction=0.6, cohesion=STRENGTH, tensile_strength=STRENGTH)
     outcome = wall.run(model, tolerance=0.005)
@@ -62,7 +62,7 @@ def test_a_joint_is_as_thick_as_the_thinner_of_its_blocks(model: str, lower: flo
 
 
 def pile(thickness: Sequence[float], **keys: Any) -> rb.Wall:
-    """Stones on one another, each of a thickness of its own; that of the wall is none of them."""
+    """A stack of blocks with individual thicknesses, none of which is that of the wall."""
     stone = {"density": DENSITY, "young": 1e10, "poisson": 0.2}
     return rb.Wall.courses(
         [[1]] * len(thickness),
@@ -77,8 +77,8 @@ def pile(thickness: Sequence[float], **keys: Any) -> rb.Wall:
 
 
 @pytest.mark.parametrize("model", [*MODELS, "limit-nonassociated"])
-def test_each_bed_of_a_pile_is_as_thick_as_its_own_stones(model: str) -> None:
-    """Its beds are alike but for that: lifted by its top a pile parts where f_t L t and the weight above are least."""
+def test_each_bed_of_stack_has_thickness_of_its_blocks(model: str) -> None:
+    """Lifted at its top, the stack parts at the bed with the smallest f_t L t plus weight above."""
     thickness = [0.4, 0.1, 0.3, 0.15]
     lift = {"kind": "point", "at": [WIDTH / 2, 4 * HEIGHT], "force": [0.0, 1.0]}
     joint = {"friction": 0.6, "cohesion": STRENGTH, "tensile_strength": STRENGTH}
@@ -93,8 +93,8 @@ def test_each_bed_of_a_pile_is_as_thick_as_its_own_stones(model: str) -> None:
 
 
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated"])
-def test_the_checker_knows_how_thick_blocks_are(model: str, tmp_path: Path) -> None:
-    """By its own sums of weights and strengths, beside a beam and the ground."""
+def test_checker_accounts_for_block_thickness(model: str, tmp_path: Path) -> None:
+    """With the checker's own sums of weights and strengths, including a beam and the ground."""
     joint: dict[str, Any] = {"friction": 0.6, "cohesion": 3e3, "tensile_strength": 2e3}
     if model == "limit":
         joint["compressive_strength"] = 2e5
@@ -104,8 +104,8 @@ def test_the_checker_knows_how_thick_blocks_are(model: str, tmp_path: Path) -> N
     assert check(tmp_path)
 
 
-def test_the_bed_between_two_thicknesses_crushes_where_they_share_it() -> None:
-    """Pressed straight down: f_m L t less the weight of the stone above."""
+def test_bed_between_two_thicknesses_crushes_on_common_area() -> None:
+    """Pressed vertically: f_m L t less the weight of the block above."""
     press = {"kind": "point", "at": [WIDTH / 2, 2 * HEIGHT], "force": [0.0, -1.0]}
     wall = stepped(lower=THICK, upper=THIN, live=press, friction=0.6, compressive_strength=1e6)
     exact = 1e6 * WIDTH * THIN - DENSITY * GRAVITY * WIDTH * HEIGHT * THIN
@@ -114,8 +114,8 @@ def test_the_bed_between_two_thicknesses_crushes_where_they_share_it() -> None:
 
 @settings(max_examples=30)
 @given(st.lists(st.floats(0.05, 1.0), min_size=10, max_size=10))
-def test_dry_walls_know_of_thicknesses_by_the_weights_alone(thickness: list[float]) -> None:
-    """Density times thickness is all that limit analysis of dry joints reads."""
+def test_dry_walls_depend_on_thickness_through_weights_only(thickness: list[float]) -> None:
+    """Limit analysis of dry joints uses only density times thickness."""
     assign = [{"block": f"m{k}", "blocks": [k]} for k in range(len(thickness))]
     own = {f"m{k}": {"density": DENSITY, "thickness": t} for k, t in enumerate(thickness)}
     heavy = {f"m{k}": {"density": DENSITY * t / THIN} for k, t in enumerate(thickness)}
@@ -133,8 +133,8 @@ def test_dry_walls_know_of_thicknesses_by_the_weights_alone(thickness: list[floa
         *((model, "finite") for model in ("dem-dynamic", "fem")),
     ],
 )
-def test_a_wall_is_the_same_whichever_key_has_its_thickness(model: str, displacements: str) -> None:
-    """To the last bit: the blocks' own in place of the wall's."""
+def test_result_does_not_depend_on_key_of_thickness(model: str, displacements: str) -> None:
+    """Bitwise: thickness of the blocks instead of that of the wall."""
     settings: dict[str, Any] = {"displacements": "finite", "distance": 1e-3} if displacements == "finite" else {}
     size: dict[str, Any] = {"block_width": WIDTH, "block_height": HEIGHT, "live": "lateral"}
     block = {"density": DENSITY, "young": 1e9, "poisson": 0.2}
@@ -149,8 +149,8 @@ def test_a_wall_is_the_same_whichever_key_has_its_thickness(model: str, displace
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(THICK, THIN), (THIN, THICK)])
-def test_points_and_contacts_share_the_area_of_their_joint(lower: float, upper: float) -> None:
-    """Rigid and deformable, at small displacements and at finite ones: L min(t, t'), of the lowest bed L t."""
+def test_points_and_contacts_have_area_of_their_joint(lower: float, upper: float) -> None:
+    """Rigid and deformable blocks, small and finite displacements: L min(t, t'), and L t for the lowest bed."""
     scene = stepped(lower=lower, upper=upper, live="lateral", friction=0.6).scene
     exact = np.where((scene.joints.block == 1).any(axis=1), min(lower, upper), lower) * scene.joints.length
     points, outline = wall_points(scene), Outline.of(scene)
@@ -164,11 +164,11 @@ def test_points_and_contacts_share_the_area_of_their_joint(lower: float, upper: 
         assert np.bincount(contacts.joint[own], contacts.area[own]) == pytest.approx(exact)
 
 
-def test_stones_that_meet_later_share_what_the_thinner_one_has() -> None:
-    """The upper of two stones has come down on the ground: half a side, as running bond has, in halves at its ends."""
+def test_new_contacts_have_thickness_of_thinner_block() -> None:
+    """The upper block has come down on the ground: contacts of half a side, as in running bond, halved at the ends."""
     scene = stepped(lower=THICK, upper=THIN, live="lateral", friction=0.6).scene
     outline, motion = Outline.of(scene), np.zeros((len(scene.blocks), 3))
-    motion[0, 0] = 3 * WIDTH  # the lower one is out of its way
+    motion[0, 0] = 3 * WIDTH  # the lower one is moved aside
     motion[1, 1] = -HEIGHT
     contacts = find_contacts(outline, motion.ravel(), outline.margin)
     owner = outline.blocks.owner[contacts.ends[:, 4:].astype(np.int64)]
@@ -177,7 +177,7 @@ def test_stones_that_meet_later_share_what_the_thinner_one_has() -> None:
     assert contacts.area[~of_upper] == pytest.approx(WIDTH * THICK / 2)
 
 
-def test_deformable_stones_are_as_stiff_and_as_heavy_as_they_are_thick() -> None:
+def test_stiffness_and_mass_of_deformable_blocks_scale_with_thickness() -> None:
     wall = modal_wall(stepped(lower=THICK, upper=THIN, live="lateral", friction=0.6).scene)
     lower, upper = (wall.block == k for k in (0, 1))
     assert wall.mass[lower] == pytest.approx(THICK / THIN * wall.mass[upper])
@@ -185,7 +185,7 @@ def test_deformable_stones_are_as_stiff_and_as_heavy_as_they_are_thick() -> None
     assert wall.stiffness.max() > 0
 
 
-def test_halves_and_triangles_are_as_thick_as_their_block() -> None:
+def test_halves_and_triangles_have_thickness_of_their_block() -> None:
     inner = {"friction": 0.7, "normal_stiffness": 1e12, "shear_stiffness": 1e12, "cohesion": 1e6}
     wall = stepped(lower=THICK, upper=THIN, live="lateral", friction=0.6)
     scene = rb.Wall({**wall.description, "inner_joint": inner}).scene
@@ -197,7 +197,7 @@ def test_halves_and_triangles_are_as_thick_as_their_block() -> None:
     assert parted.mass[parted.wall].sum() == pytest.approx(scene.mass[scene.wall].sum())
 
 
-def test_a_beam_and_the_ground_are_no_thinner_than_what_they_lie_on() -> None:
+def test_beam_and_ground_do_not_reduce_joint_thickness() -> None:
     beam = {"height": 0.1, "mass": 50.0}
     wall = stepped(lower=THIN, upper=THICK, live="lateral", friction=0.6)
     scene = rb.Wall({**wall.description, "beam": beam}).scene
@@ -207,20 +207,20 @@ def test_a_beam_and_the_ground_are_no_thinner_than_what_they_lie_on() -> None:
 
 
 @pytest.mark.parametrize("key", ["block", "materials.upper"])
-def test_what_is_no_thickness_is_refused_by_its_key(key: str) -> None:
+def test_invalid_thickness_is_refused_by_key(key: str) -> None:
     wall = stepped(lower=THICK, upper=THIN, live="lateral", friction=0.6)
     with pytest.raises(SceneError, match=rf"^{key}.thickness = -0.1: must be a number above 0"):
         wall.with_({f"{key}.thickness": -0.1})
 
 
-def test_a_thickness_that_looks_like_millimetres_is_told() -> None:
+def test_thickness_in_millimetres_is_reported() -> None:
     wall = stepped(lower=THICK, upper=120.0, live="lateral", friction=0.6)
     (said,) = warnings(wall.scene)
     assert said.startswith("materials.upper.thickness = 120: is odd")
     assert said.endswith("are 120 mm meant?")
 
 
-def test_show_tells_thicknesses_by_material(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_lists_thickness_by_material(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tables = content(
         materials={"pier": {"density": 2000.0, "thickness": 0.5}}, assign=[{"block": "pier", "blocks": [0]}]
     )

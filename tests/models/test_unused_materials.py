@@ -1,4 +1,4 @@
-"""What ``[joint]`` says is of no joint where all are of others by name, and changes nothing."""
+"""The ``[joint]`` table changes nothing if all joints have named materials."""
 
 from typing import Any
 
@@ -26,28 +26,28 @@ def _wall(joint: dict[str, Any], pattern: list[list[float]] = GATE, **changes: A
 
 @pytest.fixture(scope="module")
 def named() -> Scene:
-    """A gate of dry joints, all of a material by name; the default one crushes and softens."""
+    """A gate of dry joints of one named material; the unused default material crushes and softens."""
     return _wall(CRUSHES | {"normal_stiffness": 1e7, "shear_stiffness": 1e5})
 
 
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem"])
-def test_a_joint_material_that_no_joint_is_of_changes_no_answer(model: str, named: Scene) -> None:
-    """With the default one a wall had nine points to a joint, and fell 5 % earlier, or was refused."""
+def test_unused_joint_material_does_not_change_results(model: str, named: Scene) -> None:
+    """The unused default once caused nine points per joint, and a limit load 5 % lower or a refusal."""
     known, scene = (each.with_block(young=1e12) for each in (_wall(DRY), named))
     one, two = (run_model(model, each) for each in (known, scene))
     assert (one.status, one.lower, one.upper) == (two.status, two.lower, two.upper)
     assert np.array_equal(one.force, two.force)
 
 
-def test_its_points_are_those_of_joints_that_sides_may_form_later(named: Scene) -> None:
+def test_unused_material_sets_points_only_at_finite_displacements(named: Scene) -> None:
     assert len(wall_rule(named).nodes) == 2
     assert len(wall_rule(named, finite=True).nodes) > 2
 
 
-def test_it_is_none_of_the_walls_that_were_tested(named: Scene) -> None:
+def test_unused_material_does_not_affect_advice(named: Scene) -> None:
     assert joints_of(named) == joints_of(_wall(DRY))
 
 
-def test_moduli_of_a_wall_are_those_of_its_joints() -> None:
+def test_moduli_depend_on_joints_of_wall_only() -> None:
     one, two = (rigid_moduli(_wall(joint, PANEL)) for joint in (DRY, DRY | {"normal_stiffness": 1e5}))
     assert one == two

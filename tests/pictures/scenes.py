@@ -1,4 +1,4 @@
-"""Scenes for pictures, which together have every key of a scene file that is drawn."""
+"""Scenes for pictures, which together use every key of a scene file that is drawn."""
 
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -14,7 +14,7 @@ OAK = {"density": 700.0}
 
 
 def wall(length: float, height: float, block: tuple[float, float] = (0.5, 0.25), **tables: Any) -> dict[str, Any]:
-    """A wall of limestone 0.3 m thick, with tables in place of the usual ones."""
+    """A limestone wall 0.3 m thick; `tables` replace the default ones."""
     size = {"block_width": block[0], "block_height": block[1], "thickness": 0.3, "length": length, "height": height}
     return {
         "title": "wall",
@@ -35,7 +35,7 @@ def point(x: float, y: float, fx: float, fy: float) -> dict[str, Any]:
 
 
 def facade() -> dict[str, Any]:
-    """Two storeys with a door and windows, oak lintels, mortared piers, floors and a roof, pushed to the left."""
+    """Two storeys with a door, windows, oak lintels, mortared piers, floors and a roof, pushed to the left."""
     full, half = [1.0] * 12, [0.5, *[1.0] * 11, 0.5]
     door = (
         [1.0] * 2 + [-2.0] + [1.0] * 3 + [-2.0] + [1.0] * 3,
@@ -81,7 +81,7 @@ def facade() -> dict[str, Any]:
 
 
 def settling_portal() -> dict[str, Any]:
-    """Two piers and a wall above; the ground under the right pier goes down by 20 mm."""
+    """Two piers and a wall above; the ground under the right pier sinks by 20 mm."""
     rows = [[2.0, -2.0, 2.0], [1, 1, -2, 1, 1]] * 3 + [[1.0, 4.0, 1.0], [1.0] * 6, [0.5, *[1.0] * 5, 0.5]]
     return wall(0, 0) | {
         "title": "Portal on a settling pier",
@@ -91,7 +91,7 @@ def settling_portal() -> dict[str, Any]:
 
 
 def turning_support() -> dict[str, Any]:
-    """The same with a support that moves outwards and turns."""
+    """The same portal with a support that moves outwards and rotates."""
     live = {
         "kind": "settlement",
         "box": [[-9.0, -1.0], [1.1, 0.1]],
@@ -103,7 +103,7 @@ def turning_support() -> dict[str, Any]:
 
 
 def shear_wall() -> dict[str, Any]:
-    """Under a level beam of 500 kg on its own mortar, with a constant force, pushed to and fro at mid-height."""
+    """Under a level beam of 500 kg on its own mortar, with a constant force, cyclically driven at mid-height."""
     path = [0.0, 0.001, -0.001, 0.002, -0.002, 0.004, -0.004]
     return wall(1.0, 1.25, (0.25, 0.0625)) | {
         "title": "Shear wall, cyclic",
@@ -121,7 +121,7 @@ def shear_wall() -> dict[str, Any]:
 
 
 def kept_beam() -> dict[str, Any]:
-    """A beam kept at its height, pushed to the left by a live force; joints of two kinds, bed and head."""
+    """A beam held at its height, pushed to the left by a live force; bed and head joints of different materials."""
     return wall(2.0, 1.0) | {
         "title": "Beam kept at its height",
         "joints": {"mortar": MORTAR, "dry": {"friction": 0.4}},
@@ -140,7 +140,7 @@ def free_beam() -> dict[str, Any]:
 
 
 def tied() -> dict[str, Any]:
-    """Two kinds of ties, one to an anchor in space, and a moment beside a push."""
+    """Two ties, one of them to an anchor in space, and a moment in addition to a lateral load."""
     bar = {"area": 3e-4, "young": 2.1e11, "yield": 7e4}
     return wall(3.0, 2.0) | {
         "title": "Wall with ties",
@@ -161,7 +161,7 @@ def tilted() -> dict[str, Any]:
 
 
 def many_loads() -> dict[str, Any]:
-    """Loads of every kind, dead and live, several at one place; gravity aslant."""
+    """Dead and live loads of every kind, several at one point, and inclined gravity."""
     return wall(4.0, 1.5) | {
         "title": "Every kind of load",
         "load": {
@@ -197,7 +197,7 @@ def cracked() -> dict[str, Any]:
 
 
 def one_block() -> dict[str, Any]:
-    """An eccentric line load that leans."""
+    """Under an eccentric, inclined line load."""
     return wall(0.5, 1.0, (0.5, 1.0)) | {
         "title": "One block",
         "load": {"gravity": 9.81, "live": line(1.0, 0.3, 0.5, [3e2, -1e3])},
@@ -205,7 +205,7 @@ def one_block() -> dict[str, Any]:
 
 
 def many_materials() -> dict[str, Any]:
-    """As many materials as there are colours, of blocks and of joints: a long key."""
+    """As many materials of blocks and joints as there are colours, for a long key."""
     places = [[[0, 0.25 * k + 0.2], [4, 0.25 * k + 0.4]] for k in range(6)]
     return wall(4.0, 1.75) | {
         "title": "Many materials",

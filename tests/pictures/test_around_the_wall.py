@@ -1,4 +1,4 @@
-"""What is drawn around a wall says what its scene does: each load with its size, ties, supports, the beam."""
+"""Drawings of what surrounds a wall: loads with their sizes, ties, supports, the beam, labels and block numbers."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -50,8 +50,8 @@ from .scenes import MORTAR, SCENES, facade, large, line, on_a_step, point, settl
 
 
 @dataclass(frozen=True)
-class Own(Action):
-    """An acceleration and a moment at once."""
+class MassForceAndMoment(Action):
+    """A load of the user's own: an acceleration and a moment at once."""
 
     def forces(self, scene: Scene) -> Forces:
         moment = np.zeros(len(scene.blocks))
@@ -64,7 +64,7 @@ NAMES = [*SCENES, "on_a_step"]
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Scene, Figure]]:
-    """A scene and its figure by name, each made once."""
+    """Function that returns a scene and its figure by name, each made once."""
     made: dict[str, tuple[Scene, Figure]] = {}
 
     def draw(name: str) -> tuple[Scene, Figure]:
@@ -80,7 +80,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Sce
 
 
 def words(figure: Figure) -> list[Text]:
-    """All texts of a figure that say something: labels, captions and key."""
+    """All non-empty texts of a figure: labels, captions and key."""
     axes = figure.axes[0]
     legend = axes.get_legend()
     key = legend.get_texts() if legend else []
@@ -88,10 +88,10 @@ def words(figure: Figure) -> list[Text]:
 
 
 def labels(figure: Figure) -> list[str]:
-    """The labels of a figure, without captions, which are annotations, and without that of its scale."""
+    """Labels of a figure, without its captions, which are annotations, and without that of its scale."""
     found = [text.get_text() for text in figure.axes[0].texts if type(text) is Text]
     bar = max(float(np.ptp(line.get_xdata())) for line in named(figure, "scale", Line2D))
-    found.remove(f"{bar:.6g} m")  # as long as it says
+    found.remove(f"{bar:.6g} m")  # the scale is as long as its label states
     return found
 
 
@@ -102,14 +102,14 @@ def named(figure: Figure, name: str, kind: Any) -> list[Any]:
 
 
 def arrows(figure: Figure) -> Counter[str]:
-    """Numbers of arrows by what they stand for."""
+    """Numbers of arrows by their labels."""
     found = [artist for artist in figure.axes[0].get_children() if isinstance(artist, FancyArrowPatch)]
     return Counter(str(artist.get_label()) for artist in found if artist.get_label())
 
 
 def assert_legible(figure: Figure) -> None:
-    """No two boxes of text overlap by more than rounding, and nothing is cut off, arrows included."""
-    figure.draw_without_rendering()  # texts have no place before
+    """Assert that no two texts overlap by more than rounding, and that no text or arrow is cut off."""
+    figure.draw_without_rendering()  # before, texts have no position
     texts, whole = words(figure), figure.bbox
     for artist in (*texts, *(one for one in figure.axes[0].get_children() if isinstance(one, FancyArrowPatch))):
         box = artist.get_window_extent()
@@ -122,7 +122,7 @@ def assert_legible(figure: Figure) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_words_stand_clear_of_each_other_and_inside(name: str, drawn: Any) -> None:
+def test_texts_do_not_overlap_and_are_inside_figure(name: str, drawn: Any) -> None:
     assert_legible(drawn(name)[1])
 
 
@@ -163,7 +163,7 @@ def loaded(draw: st.DrawFn) -> dict[str, Any]:
 
 @settings(max_examples=10, derandomize=True)
 @given(loaded())
-def test_any_wall_can_be_read_whatever_loads_it(tables: dict[str, Any]) -> None:
+def test_texts_of_random_loads_are_legible(tables: dict[str, Any]) -> None:
     assert_legible(figure_of(scene_from_dict(tables)))
 
 
@@ -193,12 +193,12 @@ def test_each_load_is_drawn_with_its_size(name: str, said: list[str], counts: di
     for kind in ("live load", "motion", "gravity"):
         assert found[kind] == counts.get(kind, 0), kind
     assert bool(found["dead load"]) == bool(scene.load.dead)
-    if name != "facade":  # how many stand for a load along a line depends on how large it is drawn
+    if name != "facade":  # the number of arrows of a line load depends on its drawn length
         assert found["dead load"] == counts.get("dead load", 0)
 
 
-def test_every_load_of_many_is_said_once(drawn: Any) -> None:
-    """Ten loads and a vector of gravity: those on the mass along one direction share their arrows and a label."""
+def test_each_of_many_loads_has_one_label(drawn: Any) -> None:
+    """Ten loads and a gravity vector: loads on the mass in the same direction share their arrows and a label."""
     _, figure = drawn("many_loads")
     shared = "λ · 2 m/s²\n+ λ · weight"
     own = ["λ · 1 kN", "λ · 1.5 kN/m", "λ · 2 kN", "λ · 500 N", "5 kN", "2 kN/m", "500 N m", "weight", "1 m/s²"]
@@ -224,18 +224,20 @@ def test_every_load_of_many_is_said_once(drawn: Any) -> None:
         (line(1.0, 0, 2, [-6e2, -8e2]), (-0.6, -0.8)),
     ],
 )
-def test_arrows_point_where_the_load_does_and_stand_outside(load: dict[str, Any], direction: Any) -> None:
-    """A push ends at the wall or short of it and a pull starts there, so that no arrow lies over a block."""
+def test_arrows_have_direction_of_load_and_lie_outside_wall(load: dict[str, Any], direction: Any) -> None:
+    """A push ends at the wall or before it and a pull starts there, so no arrow covers a block."""
     scene = scene_from_dict(wall(2.0, 1.0) | {"load": {"gravity": 9.81, "live": load}})
-    for arrow in named(figure_of(scene), "live load", FancyArrowPatch):
+    arrows = named(figure_of(scene), "live load", FancyArrowPatch)
+    assert arrows
+    for arrow in arrows:
         tail, tip = arrow._path_original.vertices
         assert (tip - tail) / np.hypot(*(tip - tail)) == pytest.approx(np.array(direction), abs=1e-9)
         x, y = (tail + tip) / 2
         assert not (0 < x < 2 and 0 < y < 1)
 
 
-def test_pressures_beside_one_another_are_drawn_in_proportion_and_at_the_wall() -> None:
-    """Earth beside a wall, in steps: each row of arrows ends at the wall where the next one begins."""
+def test_adjacent_pressures_are_drawn_to_scale_at_wall() -> None:
+    """Earth pressure in steps: all arrows end at the wall, and each row begins where the next one ends."""
     steps = {0.0: 900.0, 0.25: 600.0, 0.5: 300.0}
     dead = [{"kind": "line", "from": [0, y], "to": [0, y + 0.25], "force": [q, 0]} for y, q in steps.items()]
     load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": dead}
@@ -255,8 +257,8 @@ def test_pressures_beside_one_another_are_drawn_in_proportion_and_at_the_wall() 
     ("count", "said"),
     [(4, ["1 kN/m", "2 kN/m", "3 kN/m", "4 kN/m", "λ · weight"]), (21, ["1 … 21 kN/m", "λ · weight"])],
 )
-def test_a_filling_of_many_loads_is_said_once(count: int, said: list[str]) -> None:
-    """On an arch a load a stone: 21 sizes stood in a heap above it, some of them on its stones."""
+def test_fill_of_many_loads_has_one_label(count: int, said: list[str]) -> None:
+    """One load per stone of an arch: the labels of 21 sizes were piled up above it, some of them on its stones."""
     ends = np.linspace(0.0, 2.0, count + 1)
     fill = [{"kind": "line", "from": [a, 1], "to": [b, 1]} for a, b in pairwise(ends)]
     dead = [one | {"force": [0, -1e3 * (k + 1)]} for k, one in enumerate(fill)]
@@ -267,16 +269,16 @@ def test_a_filling_of_many_loads_is_said_once(count: int, said: list[str]) -> No
     assert arrows(figure)["dead load"] >= 2 * count
 
 
-def test_a_load_that_is_dead_and_live_is_said_as_both() -> None:
-    """One object in Python: times λ where it is live, and as it is where it is dead."""
+def test_load_that_is_dead_and_live_has_both_labels() -> None:
+    """The same Python object: times λ as a live load, and as it is as a dead load."""
     line = LineLoad((0.0, 1.0), (2.0, 1.0), (0.0, -1000.0))
     scene = scene_from_dict(wall(2.0, 1.0))
     figure = figure_of(replace(scene, load=Load((0.0, -9.81), (line,), (line,))))
     assert sorted(labels(figure)) == ["1 kN/m", "λ · 1 kN/m"]
 
 
-def test_pressures_that_have_room_keep_their_sizes() -> None:
-    """Earth in eight steps beside a wall of 4 m, each higher than its words."""
+def test_pressures_with_enough_space_keep_their_labels() -> None:
+    """Earth pressure in eight steps beside a wall of 4 m, each step higher than its label."""
     levels = np.linspace(0.0, 4.0, 9)
     earth = [{"kind": "line", "from": [0, a], "to": [0, b], "force": [1e3 * (4 - a), 0]} for a, b in pairwise(levels)]
     load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": earth}
@@ -284,8 +286,8 @@ def test_pressures_that_have_room_keep_their_sizes() -> None:
     assert len(labels(figure)) == 9
 
 
-def test_earth_around_an_arch_is_drawn_at_it_and_said_once() -> None:
-    """A load a stone, of its own size and direction: rows that slant do not push each other away from it."""
+def test_earth_pressure_on_arch_is_drawn_at_arch_with_one_label() -> None:
+    """One load per stone, of its own size and direction: inclined rows do not push each other away from the arch."""
     ray = np.exp(1j * np.linspace(np.pi, 0, 14))
     stones = [[0.8 * ray[k + 1], ray[k + 1], ray[k], 0.8 * ray[k]] for k in range(13)]
     inwards = -(ray[1:] + ray[:-1]) / np.abs(ray[1:] + ray[:-1])
@@ -310,7 +312,7 @@ def test_earth_around_an_arch_is_drawn_at_it_and_said_once() -> None:
 
 
 def on_a_slope(sense: float) -> Scene:
-    """A block of 1 m by 2 m across ground that rises by a quarter of its way, 3 m deep."""
+    """A block of 1 m by 2 m across ground of slope 1 : 4 that is 3 m deep."""
     foot, lean = np.array([1.0, 0.25]), np.array([-0.5, 2.0])
     return build_scene(
         "slope",
@@ -324,8 +326,8 @@ def on_a_slope(sense: float) -> Scene:
 
 
 @pytest.mark.parametrize(("sense", "pushes"), [(1.0, 5), (-1.0, 4)])
-def test_drawn_ground_leaves_the_scale_and_the_loads_free(sense: float, pushes: int) -> None:
-    """The scale stands below what is drawn of it, however deep it is, and no arrow lies in it."""
+def test_drawn_ground_covers_neither_scale_nor_loads(sense: float, pushes: int) -> None:
+    """The scale is below the drawn part of the ground, however deep that is, and no arrow crosses the block."""
     scene = on_a_slope(sense)
     figure = figure_of(scene)
     (ground,) = named(figure, "support", Polygon)
@@ -339,10 +341,10 @@ def test_drawn_ground_leaves_the_scale_and_the_loads_free(sense: float, pushes: 
 
 @pytest.mark.parametrize("by", [(0.02, 0.0), (0.0, -0.02), (0.0, 0.02)])
 @pytest.mark.parametrize("step", [0.0, 0.1])
-def test_the_motion_of_ground_is_said_beside_it(step: float, by: tuple[float, float]) -> None:
-    """Level ground or one in steps, of which the lower one moves: its arrow and size stood on what is drawn of it.
+def test_label_of_ground_motion_is_beside_ground(step: float, by: tuple[float, float]) -> None:
+    """On level or stepped ground, whose right part moves: its arrow and label used to be drawn on the ground.
 
-    Where it has moved to it is as deep as it was.
+    In the displaced position the ground is drawn as deep as before.
     """
     rows = [(0.0, 0.0), (2.0, -step)]
     scene = build_scene(
@@ -378,26 +380,26 @@ def faces(figure: Figure) -> Array:
 
 
 @pytest.mark.parametrize(("height", "said"), [(0.5, ["λ · 60 N"] * 2), (2.0, ["λ · Σ 480 N"])])
-def test_a_load_of_ones_own_is_drawn_by_its_arrows(height: float, said: list[str]) -> None:
-    """Wind on two courses has a size at each; on eight it is said once, in sum."""
+def test_user_defined_load_is_drawn_as_arrows(height: float, said: list[str]) -> None:
+    """Wind on two courses has a label at each; on eight courses one label states the sum."""
     tables = wall(1.0, height) | {"load": {"gravity": 9.81, "live": [Wind(800.0)]}}
     figure = figure_of(scene_from_dict(tables))
     assert labels(figure) == said
     assert arrows(figure)["live load"] == height / 0.25
 
 
-def test_an_own_load_on_mass_and_moments_is_drawn() -> None:
-    tables = wall(1.0, 0.5) | {"load": {"gravity": 9.81, "live": [Own()]}}
+def test_user_defined_load_on_mass_and_moment_is_drawn() -> None:
+    tables = wall(1.0, 0.5) | {"load": {"gravity": 9.81, "live": [MassForceAndMoment()]}}
     assert sorted(labels(figure_of(scene_from_dict(tables)))) == ["λ · 7 N m", "λ · forces on mass"]
 
 
-def test_a_motion_of_the_ground_is_drawn_as_its_largest_inertia() -> None:
+def test_ground_motion_is_drawn_as_largest_inertia_force() -> None:
     pulse = {"pulse": {"kind": "half-sine", "amplitude": 0.4, "period": 1.0}, "quantity": "g", "scale": 0.5}
     tables = wall(1.0, 0.5) | {"load": {"gravity": 9.81, "history": pulse}}
     assert labels(figure_of(scene_from_dict(tables))) == ["λ · 0.2 g\ninertia at the peak"]
 
 
-def test_blocks_have_the_colour_of_their_material(drawn: Any) -> None:
+def test_blocks_have_colour_of_their_material(drawn: Any) -> None:
     scene, figure = drawn("facade")
     colours = np.array([BLOCK_COLOURS[k] for k in scene.material_of_block[scene.wall]])
     assert faces(figure) == pytest.approx(colours)
@@ -410,8 +412,8 @@ def test_blocks_have_the_colour_of_their_material(drawn: Any) -> None:
     assert (np.abs(faces(figure_of(held)) - HELD) < 1e-9).all(axis=1).tolist() == held.fixed.tolist()
 
 
-def test_joints_have_the_colour_of_their_material(drawn: Any) -> None:
-    """Those of bed joints and of head joints are told apart in the key, and an unused material is not in it."""
+def test_joints_have_colour_of_their_material(drawn: Any) -> None:
+    """The key distinguishes the materials of bed and head joints, and omits unused materials."""
     scene, figure = drawn("kept_beam")
     lines = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
     assert [len(one.get_segments()) for one in lines] == [(scene.material_of_joint == k).sum() for k in (1, 2)]
@@ -422,7 +424,7 @@ def test_joints_have_the_colour_of_their_material(drawn: Any) -> None:
     assert not [text for text in said if text.startswith("joints")]
 
 
-def test_strengths_of_joints_have_their_symbols_with_indices() -> None:
+def test_joint_strengths_have_symbols_with_subscripts() -> None:
     strengths = {"cohesion": 3e5, "tensile_strength": 1e5, "compressive_strength": 8e6}
     energies = {"fracture_energy_1": 20.0, "fracture_energy_2": 150.0}
     scene = scene_from_dict(wall(2.0, 1.0, joint=MORTAR | strengths | energies))
@@ -430,7 +432,7 @@ def test_strengths_of_joints_have_their_symbols_with_indices() -> None:
     assert "joints: tan φ = 0.75, c = 0.3 MPa, fₜ = 0.1 MPa,\nfₘ = 8 MPa, G₁ = 20 J/m², G₂ = 150 J/m²" in said
 
 
-def test_a_tie_runs_from_plate_to_plate_and_to_its_anchor(drawn: Any) -> None:
+def test_ties_are_drawn_with_plates_and_anchor(drawn: Any) -> None:
     scene, figure = drawn("tied")
     ties = [np.array(tie.get_xydata()) for tie in named(figure, "tie", Line2D)]
     assert np.array(ties) == pytest.approx(scene.ties.ends)
@@ -441,8 +443,8 @@ def test_a_tie_runs_from_plate_to_plate_and_to_its_anchor(drawn: Any) -> None:
     assert "anchor fixed in space" in said
 
 
-def test_ties_have_the_numbers_that_tables_know_them_by() -> None:
-    """In the drawing each its own, in the key those that are alike together; one alone needs none."""
+def test_ties_have_same_numbers_as_in_tables() -> None:
+    """In the drawing each tie has its number; the key lists equal ties together; a single tie has no number."""
     bar = {"area": 3e-4, "young": 2.1e11, "yield": 7e4}
     rows = ((0.1, 0.0), (0.6, 5e3), (0.9, 0.0))
     ties: list[dict[str, Any]] = [{"from": [0.1, y], "to": [1.9, y], "preload": force, **bar} for y, force in rows]
@@ -462,8 +464,8 @@ def test_ties_have_the_numbers_that_tables_know_them_by() -> None:
 @pytest.mark.parametrize(
     ("name", "guides", "hatched"), [("shear_wall", 2, 0), ("kept_beam", 4, 2), ("free_beam", 0, 0)]
 )
-def test_a_beam_is_guided_as_its_condition_says(name: str, guides: int, hatched: int, drawn: Any) -> None:
-    """Two rollers under a bar that is free to rise, or under hatched bars that are not; none on a free beam."""
+def test_beam_guides_match_its_condition(name: str, guides: int, hatched: int, drawn: Any) -> None:
+    """Two rollers under a bar if the beam may rise, or under hatching if its height is fixed; none on a free beam."""
     _, figure = drawn(name)
     parts = named(figure, "beam guide", Patch)
     assert len(parts) == guides
@@ -471,16 +473,16 @@ def test_a_beam_is_guided_as_its_condition_says(name: str, guides: int, hatched:
     assert len(named(figure, "beam", Patch)) == 1
 
 
-def test_a_drive_acts_at_its_height(drawn: Any) -> None:
+def test_drive_is_drawn_at_its_height(drawn: Any) -> None:
     _, figure = drawn("shear_wall")
     (arrow,) = named(figure, "motion", FancyArrowPatch)
     assert arrow._path_original.vertices[:, 1] == pytest.approx(0.625)
     assert same_color(arrow.get_edgecolor(), MOTION)
-    assert arrow.get_arrowstyle().arrow == "<|-|>"  # to and fro
+    assert arrow.get_arrowstyle().arrow == "<|-|>"  # cyclic
 
 
-def test_the_support_that_moves_alone_has_its_colour(drawn: Any) -> None:
-    """Ground from x = 1.9 m on goes down; where it goes to is a level dashed line below."""
+def test_only_moving_support_has_colour_of_motion(drawn: Any) -> None:
+    """Ground from x = 1.9 m on sinks; a level dashed line below shows its final position."""
     _, figure = drawn("settling_portal")
     for patch in named(figure, "support", Patch):
         x = patch.get_xy()[:, 0]
@@ -492,7 +494,7 @@ def test_the_support_that_moves_alone_has_its_colour(drawn: Any) -> None:
     assert "support that moves" in [text.get_text() for text in words(figure)]
 
 
-def test_ground_is_tilted_to_the_side_of_the_load(drawn: Any) -> None:
+def test_ground_tilts_to_side_of_load(drawn: Any) -> None:
     _, figure = drawn("tilted")
     slopes = [np.diff(one.get_xydata(), axis=0)[0] for one in named(figure, "live load", Line2D)]
     level, tilted = slopes
@@ -501,13 +503,13 @@ def test_ground_is_tilted_to_the_side_of_the_load(drawn: Any) -> None:
 
 
 def shear(scene: Scene, factor: float) -> Array:
-    """Motion of a wall whose courses slide on each other."""
+    """Motion of a wall whose courses slide on one another."""
     motion = np.zeros((len(scene.blocks), 3))
     motion[scene.wall, 0] = factor * scene.blocks.centroid[scene.wall, 1]
     return motion
 
 
-def test_in_a_mechanism_ties_hang_between_moved_ends_and_anchors_stay() -> None:
+def test_ties_of_mechanism_follow_blocks_and_anchors_stay() -> None:
     scene = scene_from_dict(SCENES["tied"]())
     motion = shear(scene, 1.0)
     figure = figure_of(scene, Outcome("", "limit", "collapse", 0.5, motion=motion))
@@ -519,7 +521,7 @@ def test_in_a_mechanism_ties_hang_between_moved_ends_and_anchors_stay() -> None:
     assert moved[1, 1] == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
-def test_in_a_mechanism_the_beam_and_the_ground_are_where_they_move_to() -> None:
+def test_beam_and_ground_of_mechanism_are_displaced() -> None:
     scene = scene_from_dict(SCENES["kept_beam"]())
     assert scene.beam is not None
     motion = shear(scene, -1.0)
@@ -544,8 +546,8 @@ def test_in_a_mechanism_the_beam_and_the_ground_are_where_they_move_to() -> None
     [point(2.0, 0.9, 1.0, 0.0), {"kind": "line", "from": [2.0, 0.75], "to": [2.0, 1.0], "force": [100.0, 0.0]}],
     ids=["point", "line"],
 )
-def test_in_a_mechanism_loads_pull_from_the_face_that_moves_with_them(load: dict[str, Any]) -> None:
-    """A course slides out to the right: arrows begin at its end, and do not run through it."""
+def test_loads_on_mechanism_start_at_displaced_face(load: dict[str, Any]) -> None:
+    """A course slides out to the right: arrows start at its end, and do not cross it."""
     scene = scene_from_dict(wall(2.0, 1.0, load={"gravity": 9.81, "live": load}))
     motion = np.zeros((len(scene.blocks), 3))
     motion[scene.wall & (scene.blocks.centroid[:, 1] > 0.75), 0] = 1.0
@@ -560,7 +562,7 @@ def test_in_a_mechanism_loads_pull_from_the_face_that_moves_with_them(load: dict
         assert tip[0] > tail[0]
 
 
-def test_in_a_mechanism_the_arm_of_a_drive_stays_on_its_beam_and_its_height_is_left_out() -> None:
+def test_drive_arm_of_mechanism_stays_on_beam_without_dimension() -> None:
     beam = {"height": 0.25, "mass": 500.0, "drive": {"displacement": [0.01, 0.0], "at": 2.0}}
     scene = scene_from_dict(wall(2.0, 1.0, beam=beam, load={"gravity": 9.81}))
     assert scene.beam is not None
@@ -577,16 +579,16 @@ def test_in_a_mechanism_the_arm_of_a_drive_stays_on_its_beam_and_its_height_is_l
 
 
 @pytest.mark.parametrize("rise", [-0.01, 0.0, 0.01])
-def test_a_force_pulls_at_a_corner_from_outside(rise: float) -> None:
-    """Behind the corner, a little above the horizontal, there is nothing of the wall."""
+def test_force_at_corner_pulls_from_outside(rise: float) -> None:
+    """Also if the force is slightly inclined: beside the corner there is nothing of the wall."""
     load = {"gravity": 9.81, "live": point(2.0, 1.0, 1.0, rise)}
     figure = figure_of(scene_from_dict(wall(2.0, 1.0, load=load)))
     (arrow,) = named(figure, "live load", FancyArrowPatch)
     assert arrow._path_original.vertices[0] == pytest.approx([2.0, 1.0])
 
 
-def test_moments_about_one_point_are_drawn_around_one_another() -> None:
-    """A dead one and two live ones on one block: three arrows at three distances, none on another."""
+def test_moments_about_one_point_have_different_radii() -> None:
+    """A dead and two live moments on one block: three arrows at three distances, none on another."""
     turned = [{"kind": "moment", "at": [0.5, 0.5], "moment": size} for size in (1e3, -1e3, 2e3)]
     load = {"gravity": 9.81, "dead": turned[0], "live": turned[1:]}
     figure = figure_of(scene_from_dict(wall(1.0, 1.0, (1.0, 1.0), load=load)))
@@ -598,8 +600,8 @@ def test_moments_about_one_point_are_drawn_around_one_another() -> None:
     assert_legible(figure)
 
 
-def test_a_support_that_moves_farther_than_its_wall_is_drawn_to_move_no_farther_than_walls_are() -> None:
-    """A wall bridges it, and follows by a thousandth."""
+def test_moving_support_limits_scale_of_mechanism() -> None:
+    """The wall bridges the support, and follows it by a thousandth."""
     portal = scene_from_dict(settling_portal())
     down = portal.support_motion / 0.02
     down[portal.wall, 1] = -1e-3
@@ -608,8 +610,8 @@ def test_a_support_that_moves_farther_than_its_wall_is_drawn_to_move_no_farther_
     assert shape.scale * np.abs(shape.face_displacement).max() == pytest.approx(DRAWN * portal.size)
 
 
-def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None:
-    """Of blocks that may crack both halves have one number, in the middle of the whole."""
+def test_block_numbers_match_assign_and_lie_inside_blocks() -> None:
+    """The two halves of a block that may crack share one number, in the middle of the whole block."""
     plain, cracked = scene_from_dict(facade()), scene_from_dict(SCENES["cracked"]())
     for scene in (plain, cracked):
         texts = [text for text in figure_of(scene, numbers=True).axes[0].texts if text.get_text().isdigit()]
@@ -626,8 +628,8 @@ def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None
     assert np.flatnonzero(again.material_of_block == 1).tolist() == np.flatnonzero(plain.part_of == 137).tolist()
 
 
-def test_numbers_stand_whole_in_blocks_cut_by_openings() -> None:
-    """In the wider arm of an L, and in slivers, in type that can be read."""
+def test_block_numbers_fit_into_blocks_cut_by_openings() -> None:
+    """In the wider arm of an L, and in narrow pieces, in legible type."""
     around = [{"from": [0.7, 0.55], "to": [1.5, 1.1]}, {"from": [2.0, 1.1], "to": [2.4, 1.6]}]
     tables = wall(2.4, 1.6, (0.4, 0.2))
     tables["wall"]["opening"] = around
@@ -640,8 +642,8 @@ def test_numbers_stand_whole_in_blocks_cut_by_openings() -> None:
 
 
 @pytest.mark.long
-def test_numbers_can_be_read_in_a_wall_of_two_thousand_blocks() -> None:
-    """The sheet grows until they can, up to five columns wide."""
+def test_block_numbers_of_large_wall_are_legible() -> None:
+    """The sheet is enlarged for that, up to five columns wide."""
     scene = scene_from_dict(large())
     figure = figure_of(scene, numbers=True)
     numbers = [text for text in figure.axes[0].texts if text.get_text().isdigit()]
@@ -651,15 +653,15 @@ def test_numbers_can_be_read_in_a_wall_of_two_thousand_blocks() -> None:
 
 
 @pytest.mark.parametrize("numbers", [False, True])
-def test_pictures_of_both_kinds_are_written(numbers: bool, tmp_path: Path) -> None:
+def test_svg_and_png_are_written(numbers: bool, tmp_path: Path) -> None:
     scene = on_a_step(tmp_path)
     assert to_svg(figure_of(scene, numbers=numbers)).startswith(b"<?xml")
     assert to_svg(figure_of(scene, numbers=numbers)) == to_svg(figure_of(scene, numbers=numbers))
     assert to_png(figure_of(scene, numbers=numbers)).startswith(b"\x89PNG")
 
 
-def test_labels_move_out_of_each_others_way() -> None:
-    """Ten labels for one point, which may stand on its right, or above or below it."""
+def test_labels_do_not_overlap() -> None:
+    """Ten labels for one point, which may be to its right, above or below it."""
     spots = [Spot(np.zeros(2), side) for side in ((1.0, 0.0), (0.0, 1.0), (0.0, -1.0))]
     placed = place_labels([Label("10 kN", spots) for _ in range(10)], np.zeros((0, 2, 2)), 0.01)
     for one, other in combinations(placed, 2):
@@ -667,7 +669,7 @@ def test_labels_move_out_of_each_others_way() -> None:
 
 
 def test_labels_keep_clear_of_hinges() -> None:
-    """The load on an arch acts beside one, which the halo around its letter would hide."""
+    """The load on an arch acts beside a hinge, which the halo around the load's letter would hide."""
     scene = read_scene(Path(__file__).parents[2] / "examples" / "walls" / "arch_with_tie.toml")
     figure = figure_of(scene, limit(scene))
     axes = figure.axes[0]
@@ -695,11 +697,11 @@ def test_labels_keep_clear_of_hinges() -> None:
         (counted(0, "joint"), "0 joints"),
     ],
 )
-def test_quantities_are_in_the_unit_that_suits_them(text: str, said: str) -> None:
+def test_quantities_have_readable_units(text: str, said: str) -> None:
     assert text == said
 
 
-def test_what_is_around_a_wall_leaves_room_to_it(drawn: Any) -> None:
-    """Even with a load of every kind the wall takes more than 40 % of the width."""
+def test_surroundings_leave_enough_space_for_wall(drawn: Any) -> None:
+    """Even with loads of every kind the wall takes more than 40 % of the width."""
     left, right = drawn("many_loads")[1].axes[0].get_xlim()
     assert 4.0 / (right - left) > 0.4

@@ -1,4 +1,4 @@
-"""Charts and plates: curves of walls pushed to and fro, brackets without a collapse, walls of any shape in rows."""
+"""Charts and plates: axes of curves, brackets without a collapse, rows of walls of any shape."""
 
 from dataclasses import replace
 from itertools import combinations
@@ -24,13 +24,13 @@ def curve(moved: Array, load: Array) -> Figure:
     return curve_figure(panel(), Outcome("wall", "dem-static", "collapse", 1.0, curve=np.column_stack([moved, load])))
 
 
-def test_displacements_are_logarithmic_where_the_elastic_range_is_not_seen_else() -> None:
+def test_displacement_axis_is_logarithmic_if_elastic_range_is_tiny() -> None:
     load = np.array([0.0, 0.9, 1.0, 1.0])
     assert curve(np.array([0.0, 1e-5, 1e-3, 1e-2]), load).axes[0].get_xscale() == "symlog"
     assert curve(np.array([0.0, 1e-3, 2e-3, 1e-2]), load).axes[0].get_xscale() == "linear"
 
 
-def test_a_wall_pushed_to_and_fro_has_even_axes_with_all_of_its_curve() -> None:
+def test_cyclic_curve_has_linear_axes_with_whole_curve() -> None:
     figure = curve(1e-3 * np.array([0.0, 0.01, 1.0, -1.0, 1.0]), np.array([0.0, 0.9, 1.0, -1.0, 1.0]))
     axes = figure.axes[0]
     assert axes.get_xscale() == "linear"
@@ -38,8 +38,8 @@ def test_a_wall_pushed_to_and_fro_has_even_axes_with_all_of_its_curve() -> None:
 
 
 @pytest.mark.parametrize("share", [0.13, 0.0, -0.17])
-def test_the_label_of_a_settlement_hides_neither_its_curve_nor_the_axis(share: float) -> None:
-    """It is below the bracket, on whose lower bound the states of the curve may lie, and above the axis."""
+def test_settlement_label_hides_neither_curve_nor_axis(share: float) -> None:
+    """It lies below the bracket, on whose lower bound the curve's states may lie, and above the axis."""
     loads = np.array([0.25, share, share, share])
     outcome = Outcome("wall", "dem-static", "collapse", share, share, share + 0.01)
     outcome = replace(outcome, curve=np.column_stack([[0.0, 1e-4, 1e-3, 1e-2], loads]))
@@ -53,7 +53,7 @@ def test_the_label_of_a_settlement_hides_neither_its_curve_nor_the_axis(share: f
 
 
 @pytest.mark.parametrize(("status", "inside"), [("collapse", "red"), ("undecided", "white")])
-def test_a_bracket_without_a_collapse_is_hollow(status: str, inside: str) -> None:
+def test_bracket_without_collapse_is_hollow(status: str, inside: str) -> None:
     axes = Figure().add_subplot()
     bracket(axes, 1.0, {"status": status, "λ lower": 0.2, "λ upper": 0.4}, "red")
     last = axes.lines[-1]
@@ -61,8 +61,8 @@ def test_a_bracket_without_a_collapse_is_hollow(status: str, inside: str) -> Non
     assert axes.lines[0].get_linewidth() == (4 if status == "collapse" else 2 * last.get_linewidth())
 
 
-def test_no_words_of_a_plate_overlap_however_long_or_tall_its_walls_are() -> None:
-    """A row is neither so low that its label meets the captions, nor so high that it leaves the others no room."""
+def test_texts_of_plate_do_not_overlap() -> None:
+    """A row is neither so low that its label overlaps the captions, nor so high that the others have no space."""
     sizes = {"garden wall": (24.0, 0.5), "chimney": (1.0, 24.0), "panel": (2.0, 1.0)}
     scenes = {name: scene_from_dict(wall(*size)) for name, size in sizes.items()}
     rows = [PlateRow(name, [undeformed_shape(scene)], ["λ = 0.6000"]) for name, scene in scenes.items()]

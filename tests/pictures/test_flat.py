@@ -1,4 +1,4 @@
-"""Flat drawings hold what they are of, as vectors, without VTK."""
+"""Flat drawings of walls and mechanisms: vectors that match the arrays, without VTK."""
 
 import io
 import re
@@ -24,7 +24,7 @@ from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.resultants import resultants
-from runningbond.pictures.style import AT_REST, DRAWN, FASTEST, SEEN, STATE_COLOURS
+from runningbond.pictures.style import AT_REST, DRAWN, FASTEST, STATE_COLOURS, VISIBLE_GAP
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from tests.walls import courses, panel
@@ -44,8 +44,8 @@ def texts(figure: Figure) -> str:
     return "\n".join([*(text.get_text() for text in axes.texts), *key])
 
 
-def test_a_wall_is_drawn_block_by_block() -> None:
-    """The polygons are the wall's own, and what is said below is what there is of them."""
+def test_wall_is_drawn_block_by_block() -> None:
+    """The polygons are those of the blocks, and the caption states their number and material."""
     scene = panel()
     figure = figure_of(scene)
     (blocks,) = of_kind(figure, PolyCollection)
@@ -58,7 +58,7 @@ def test_a_wall_is_drawn_block_by_block() -> None:
 
 
 def test_joints_are_drawn_by_material() -> None:
-    """Mortar joints and potential cracks in two colours, every joint once, along its own line."""
+    """Mortar joints and potential cracks in two colours, each joint once, along its own line."""
     scene = panel(inner_joint=CRACK)
     figure = figure_of(scene)
     lines = of_kind(figure, LineCollection)
@@ -71,8 +71,8 @@ def test_joints_are_drawn_by_material() -> None:
     assert "c = 0.3 MPa, fₜ = 0.1 MPa" in texts(figure)
 
 
-def test_a_mechanism_is_drawn_where_it_moves_to() -> None:
-    """The fastest corner is drawn to move by `DRAWN` sizes of the wall; the undeformed wall is behind."""
+def test_mechanism_is_drawn_in_displaced_position() -> None:
+    """The fastest corner is drawn to move by `DRAWN` sizes of the wall; the undeformed wall is drawn behind."""
     scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], height=0.2)
     outcome = limit(scene)
     figure = figure_of(scene, outcome)
@@ -87,8 +87,8 @@ def test_a_mechanism_is_drawn_where_it_moves_to() -> None:
     assert "drawn to move 0.1 m" in said
 
 
-def test_what_joints_do_is_told_apart_without_colour() -> None:
-    """Lines of joints that slide are dashed, of those that open solid; each lies on joints in that state."""
+def test_joint_states_differ_in_line_style() -> None:
+    """Sliding joints are dashed, open ones solid: one line per sliding joint, and two per open one."""
     scene = panel()
     outcome = limit(scene)
     shape = mechanism_shape(scene, outcome)
@@ -108,20 +108,20 @@ def test_what_joints_do_is_told_apart_without_colour() -> None:
     assert len(found[JointState.OPEN].get_segments()) == 2 * (shape.drawn_state == JointState.OPEN).sum()
 
 
-def test_a_gap_too_small_to_be_seen_is_not_painted() -> None:
-    """A stack of two: the upper block turns by the full size, or lifts off by just more or less than can be seen."""
+def test_invisible_gap_is_not_drawn() -> None:
+    """Both blocks of a stack move sideways by the full size; the upper one rises by 0.9 or 1.1 visible gaps."""
     scene = courses([[1], [1]], width=0.4, height=0.4)
     upper = int(np.argmax(scene.blocks.centroid[:, 1] * scene.wall))
     for share, states in ((0.9, []), (1.1, [JointState.OPEN])):
         motion = np.zeros((len(scene.blocks), 3))
         motion[scene.wall, 0] = 1.0
-        motion[upper, 1] = share * SEEN / DRAWN
+        motion[upper, 1] = share * VISIBLE_GAP / DRAWN
         opens = np.where((scene.joints.block == upper).any(axis=1), JointState.OPEN, JointState.STICK)
         assert DeformedShape.of_rigid_blocks(scene, motion, opens, 0.0).states == states
 
 
-def test_forces_run_through_their_centres_of_pressure_and_balance_the_wall() -> None:
-    """A block 0.2 × 0.4 m toppling at λ = 1/2: its weight and half of that push on the ground through the toe."""
+def test_resultant_passes_through_centre_of_pressure() -> None:
+    """A block 0.2 × 0.4 m topples at λ = 1/2: its weight W and the push W/2 act on the ground at the toe."""
     scene = courses([[1]], width=0.2, height=0.4)
     outcome = limit(scene)
     shape = mechanism_shape(scene, outcome)
@@ -140,10 +140,10 @@ def test_forces_run_through_their_centres_of_pressure_and_balance_the_wall() -> 
     assert not len(resultants(shape, replace(outcome, force=np.zeros((0, 2))))[0])
 
 
-def test_where_joints_pull_forces_pass_beside_them() -> None:
-    """Two blocks of 0.4 × 0.2 m, glued: λ moves the resultant of what is above a joint by λ times its centre's height.
+def test_resultants_of_tensile_joints_lie_outside_joints() -> None:
+    """Two glued blocks of 0.4 × 0.2 m: λ shifts the resultant above a joint by λ times the height of its centroid.
 
-    That of nearly equal pulls and pressures is far away, of equal ones at no place at all.
+    For nearly equal tension and pressure the resultant is far away; for equal ones it is a couple without a position.
     """
     glue = {"cohesion": 2e4, "tensile_strength": 1e4, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     scene = courses([[1], [1]], width=0.4, height=0.2, joint={"friction": 0.6, **glue})
@@ -161,8 +161,8 @@ def test_where_joints_pull_forces_pass_beside_them() -> None:
         assert "1 too far off" in texts(figure_of(scene, couple))
 
 
-def test_a_course_of_tiles_does_not_thin_out_the_lines_of_a_wall() -> None:
-    """Lines, and lines of force, are as they are without it."""
+def test_thin_course_does_not_change_line_width() -> None:
+    """Line widths stay the same, and resultants are still drawn."""
     drawn = []
     for tile in (0.2, 0.01):
         scene = panel(wall__height=None, wall__block_height=None, wall__course_heights=[0.2, tile, 0.2, 0.2])
@@ -172,8 +172,8 @@ def test_a_course_of_tiles_does_not_thin_out_the_lines_of_a_wall() -> None:
     assert drawn[1] == pytest.approx(drawn[0], rel=1e-6)
 
 
-def test_cracks_that_stay_shut_leave_nothing_of_themselves() -> None:
-    """A wall that slides as one looks the same whether its blocks might crack or not, also where outlines would end."""
+def test_closed_cracks_are_invisible() -> None:
+    """A wall that slides as one body looks the same with and without potential cracks, also at the ends of outlines."""
     pictures = []
     both: list[dict[str, Any]] = [{}, {"inner_joint": CRACK | {"cohesion": 1e7, "tensile_strength": 1e6}}]
     for tables in both:
@@ -187,17 +187,17 @@ def test_cracks_that_stay_shut_leave_nothing_of_themselves() -> None:
         paint_mechanism(axes, shape, line_width(scene, shape.extent, (3.5, 2.5)))
         picture = io.BytesIO()
         figure.savefig(picture)
-        # Where dashes are, of the base and of where the wall was, these begin anew at each half.
+        # Left out are dashed lines, of the base and the undeformed wall: their dashes start again at each half block.
         corners = np.array([shape.placed.min(axis=0) + [0.01, 0.05], shape.placed.max(axis=0) - 0.01])
         (left, bottom), (right, top) = axes.transData.transform(corners).astype(int)
         pictures.append(np.asarray(Image.open(picture).convert("L"), dtype=int)[-top:-bottom, left:right])
     plain, cracked = pictures
     line = int(plain.max() - plain.min())
     assert line > 20
-    assert np.abs(plain - cracked).max() < 0.75 * line  # lines end within a pixel
+    assert np.abs(plain - cracked).max() < 0.75 * line  # lines end within a pixel of each other
 
 
-def test_a_hinge_is_marked_where_a_block_turns() -> None:
+def test_hinge_is_marked_at_centre_of_rotation() -> None:
     """A block twice as high as wide topples about the lower corner on the far side."""
     scene = courses([[1]], width=0.2, height=0.4)
     figure = figure_of(scene, limit(scene))
@@ -206,7 +206,7 @@ def test_a_hinge_is_marked_where_a_block_turns() -> None:
     assert "hinge" in texts(figure)
 
 
-def test_a_motion_that_is_no_mechanism_is_not_drawn_and_said() -> None:
+def test_motion_that_is_no_mechanism_is_not_drawn() -> None:
     scene = panel()
     backwards = replace(limit(scene), motion=-limit(scene).motion)
     figure = figure_of(scene, backwards)
@@ -219,8 +219,8 @@ def test_a_motion_that_is_no_mechanism_is_not_drawn_and_said() -> None:
 
 
 @pytest.mark.parametrize("kind", ["base", "fixed-first-course", "corners", "pinned-corners"])
-def test_nothing_runs_out_of_the_figure(kind: str) -> None:
-    """With every support and load, and a title that is too long for a line; something is drawn beside the wall."""
+def test_nothing_is_cut_off_at_figure_edge(kind: str) -> None:
+    """For every support and load, with a title too long for one line; outside the axes there are captions."""
     scene = panel(support__kind=kind, load__live=POINT if "corners" in kind else {"kind": "lateral"})
     scene = replace(scene, title="A title that is a good deal longer than the picture is wide, and has to be broken up")
     for figure in (figure_of(scene), figure_of(scene, replace(limit(scene), scene=scene.title))):
@@ -233,7 +233,7 @@ def test_nothing_runs_out_of_the_figure(kind: str) -> None:
         assert (captions[:, [0, 1, 2, -3, -2, -1]] > 250).all()
 
 
-def test_an_svg_file_is_of_vectors_and_always_the_same() -> None:
+def test_svg_is_vectors_and_reproducible() -> None:
     scene = panel()
     content = to_svg(figure_of(scene, limit(scene)))
     root = ET.fromstring(content)
@@ -242,7 +242,7 @@ def test_an_svg_file_is_of_vectors_and_always_the_same() -> None:
     assert content == to_svg(figure_of(scene, limit(scene)))
 
 
-def test_axes_of_ones_own_are_drawn_into() -> None:
+def test_drawing_into_given_axes() -> None:
     figure = Figure()
     left, right = figure.subplots(1, 2)
     scene: Scene = panel()
@@ -251,7 +251,7 @@ def test_axes_of_ones_own_are_drawn_into() -> None:
     assert to_png(figure, 100)[1:4] == b"PNG"
 
 
-def test_flat_drawings_do_without_vtk() -> None:
+def test_flat_drawings_do_not_import_vtk() -> None:
     program = (
         "import sys; from tests.walls import panel; from runningbond.limit import limit;"
         "from runningbond.pictures.flat import figure_of; from runningbond.pictures.captions import to_svg;"
@@ -262,8 +262,8 @@ def test_flat_drawings_do_without_vtk() -> None:
     assert done.stdout.strip() == "[]", done.stderr
 
 
-def test_blocks_in_a_page_are_of_one_hue() -> None:
-    """Shades lie between those of blocks at rest and of the fastest, whatever is spared."""
+def test_block_colours_of_inline_mechanism_have_one_hue() -> None:
+    """Shades lie on the line from the colour at rest to that of the fastest block, though similar ones are merged."""
     scene = panel(wall__length=0.48, wall__height=1.44)
     shape = mechanism_shape(scene, limit(scene))
     assert shape is not None

@@ -1,4 +1,4 @@
-"""A motion is drawn as a mechanism only if its loads can drive it; what its joints do is read from their jumps."""
+"""Mechanisms are drawn only if the loads can drive them; joint states follow from the jumps."""
 
 from dataclasses import replace
 from typing import Any, Literal
@@ -18,7 +18,7 @@ from runningbond.pictures.curve import curve_figure
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.pictures.inline import inline_mechanism
-from runningbond.pictures.joint_state import VISIBLE, JointState
+from runningbond.pictures.joint_state import VISIBLE_JUMP, JointState
 from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape, mechanism_warning, outcome_check
 from runningbond.pictures.style import CRUSHED
 from runningbond.pictures.vtk_grids import GridBuilder, shape_of_grids
@@ -36,10 +36,10 @@ POINT = {"kind": "point", "at": [0.2, 0.35], "force": [0.0, -1.0]}
 
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static"])
 @pytest.mark.parametrize("name", ["panel-01", "panel-04", "point-load-4", "wall-w1", "wall-w2", "wall-w3"])
-def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) -> None:
-    """The live load does positive work, and all loads together what friction takes: none or more. Nothing overlaps.
+def test_loads_drive_mechanisms_of_published_walls(name: str, model: str) -> None:
+    """The live load does positive work, the net work with friction is not negative, and blocks do not overlap.
 
-    A wall without weight whose slip presses it together creeps in `dem-static` while its springs still give, steadily.
+    In `dem-static`, a weightless wall whose slip compresses its joints creeps steadily while its springs still deform.
     """
     scene = published_scene(name)
     settings: dict[str, Any] = {"starts": 1} if model == "limit-nonassociated" else {}
@@ -58,14 +58,14 @@ def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) ->
 
 
 def moving(scene: Scene, x: float, y: float, spin: float = 0.0) -> Array:
-    """Motion of the highest block alone."""
+    """Motion of the highest block only."""
     motion = np.zeros((len(scene.blocks), 3))
     motion[int(np.argmax(scene.blocks.centroid[:, 1] * scene.wall))] = x, y, spin
     return motion
 
 
-def test_works_and_overlap_are_those_of_a_block_by_hand() -> None:
-    """A block of 0.4 × 0.2 × 0.12 m and 1800 kg/m³ moves aside by 0.6 m and sinks by 0.8 m into the one below."""
+def test_works_and_overlap_of_block_by_hand() -> None:
+    """A block of 0.4 × 0.2 × 0.12 m and 1800 kg/m³ moves sideways by 0.6 m and sinks 0.8 m into the one below."""
     scene = courses([[1], [1]], height=0.2)
     weight = 0.4 * 0.2 * 0.12 * 1800 * 9.81
     check = check_mechanism(scene, 5 * moving(scene, 0.6, -0.8), dead_load(scene), live_load(scene), 0.5)
@@ -78,7 +78,7 @@ def test_works_and_overlap_are_those_of_a_block_by_hand() -> None:
     assert lifted.warning == "the loads do negative work on this motion"
 
 
-def test_an_overlap_is_said_and_a_small_one_is_not() -> None:
+def test_warning_of_overlap_has_threshold() -> None:
     scene = courses([[1], [1]])
     for depth, drawn in ((0.9 * MAX_OVERLAP, ""), (0.1, "blocks overlap by up to 10% of the largest displacement")):
         outcome = Outcome("", "a model", "collapse", 0.6, motion=moving(scene, 1.0, -depth))
@@ -86,13 +86,13 @@ def test_an_overlap_is_said_and_a_small_one_is_not() -> None:
         assert mechanism_warning(scene, outcome) == drawn
 
 
-def test_a_load_that_does_no_work_drives_nothing() -> None:
+def test_load_without_work_drives_no_mechanism() -> None:
     scene = courses([[1], [1]], load__live=POINT)
     outcome = Outcome("", "a model", "collapse", 1.0, motion=moving(scene, 1.0, 0.0))
     assert mechanism_warning(scene, outcome) == "mechanism not drawn: the live load does no work on this motion"
 
 
-def test_a_wall_that_falls_under_its_dead_load_is_not_asked_of_the_live_one() -> None:
+def test_fall_under_dead_load_needs_no_live_work() -> None:
     scene = courses([[1], [1]])
     falling = Outcome("", "a model", "infeasible", motion=moving(scene, -0.6, -0.01))
     check = outcome_check(scene, falling)
@@ -102,7 +102,7 @@ def test_a_wall_that_falls_under_its_dead_load_is_not_asked_of_the_live_one() ->
 
 
 @pytest.mark.parametrize("load", [{"kind": "lateral"}, {"kind": "point", "at": [0.2, 0.35], "force": [0, -1]}])
-def test_no_live_load_is_drawn_where_the_dead_one_brings_the_wall_down(load: dict[str, Any]) -> None:
+def test_live_load_is_not_drawn_for_fall_under_dead_load(load: dict[str, Any]) -> None:
     scene = courses([[1], [1]], load__live=load)
     answers: tuple[tuple[Literal["collapse", "infeasible"], int], ...] = (("collapse", 1), ("infeasible", 0))
     for status, drawn in answers:
@@ -122,22 +122,22 @@ def states(scene: Scene, x: float, y: float) -> set[int]:
     return set(frame.state[(wall_points(scene).block == upper).any(axis=1)].tolist())
 
 
-def test_a_joint_that_visibly_opens_is_open_however_far_it_slides() -> None:
-    """Friction is 0.6. Without dilatancy a joint that opens by 0.2 while it slides by 0.8 is open."""
+def test_visibly_open_joint_is_open_at_any_slip() -> None:
+    """Friction is 0.6. Without dilatancy a joint that opens by 0.2 and slides by 0.8 is open."""
     scene = courses([[1], [1]])
     assert states(scene, 0.8, 0.2) == {JointState.OPEN}
-    assert states(scene, 0.8, 0.5 * VISIBLE) == {JointState.SLIDE}
-    assert states(scene, 0.5 * VISIBLE, 0.0) == {JointState.STICK}
+    assert states(scene, 0.8, 0.5 * VISIBLE_JUMP) == {JointState.SLIDE}
+    assert states(scene, 0.5 * VISIBLE_JUMP, 0.0) == {JointState.STICK}
 
 
 CRUSHING = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, "compressive_strength": 2e6}
 
 
 @pytest.mark.parametrize(("crushed", "crosses"), [([0.0, 1e-3], 1), ([0.0, 1e-7], 0), ([1e-3, 0.0], 0)])
-def test_a_gap_that_closes_is_not_crushed(crushed: list[float], crosses: int) -> None:
-    """A block that turns closes its joint at the right, which was crushed there by 1 mm, by next to none, or elsewhere.
+def test_closing_gap_is_not_crushed(crushed: list[float], crosses: int) -> None:
+    """A turning block closes the right end of its joint, which was crushed by 1 mm or 0.1 µm, or only at the left.
 
-    A wall that snaps back as it gives way closes gaps all over, and was drawn as if it were crushed all over.
+    Walls that spring back during collapse close gaps everywhere, and were drawn as if they were crushed everywhere.
     """
     scene = courses([[1]], width=0.4, height=0.8, joint=CRUSHING)
     motion = np.array([[0.4, -0.2, -1.0], [0.0, 0.0, 0.0]])
@@ -147,8 +147,8 @@ def test_a_gap_that_closes_is_not_crushed(crushed: list[float], crosses: int) ->
     assert len(shape.crosses) == crosses
 
 
-def test_ends_that_crush_are_crosses_and_no_fault() -> None:
-    """A block turns about a point a quarter of its width from its toe: its heel opens, its toe crushes the joint."""
+def test_crushed_ends_are_crosses_without_warning() -> None:
+    """A block turns about a point a quarter of its width from its toe: the heel opens, the toe crushes the joint."""
     scene = courses([[1]], width=0.4, height=0.8, joint=CRUSHING)
     low, turn = scene.blocks.extent(scene.wall)[0], np.array([0.3, 0.0])
     arm = scene.blocks.centroid[0] - low - turn
@@ -168,7 +168,7 @@ def test_ends_that_crush_are_crosses_and_no_fault() -> None:
     grids = GridBuilder(Discretisation.of_rigid_blocks(scene))
     frame = mechanism_frame(scene, outcome)
     assert frame is not None
-    frame = frame.scaled(1e-3)  # small motions are enlarged, large ones are drawn as they are
+    frame = frame.scaled(1e-3)  # only small motions are enlarged
     read = shape_of_grids(scene, grids.blocks(frame), grids.joints(frame))
     assert read.crosses == pytest.approx(shape.crosses, abs=1e-6)
     seen = inline_mechanism(shape, shape.extent, "rest")
@@ -176,8 +176,8 @@ def test_ends_that_crush_are_crosses_and_no_fault() -> None:
 
 
 @pytest.mark.parametrize("title", [r"$\frac{a}{b$", "one $ alone", *at_length("from $5 to $10 a brick", "a_b^c")])
-def test_a_title_is_no_formula(title: str) -> None:
-    """Dollars are what they are, in every picture with a title."""
+def test_title_is_not_parsed_as_formula(title: str) -> None:
+    """Dollar signs are printed as they are in every picture with a title."""
     scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, title=title)
     outcome = dem_static(scene)
     for figure in (figure_of(scene, outcome), curve_figure(scene, outcome)):
@@ -186,8 +186,8 @@ def test_a_title_is_no_formula(title: str) -> None:
         assert [each for each in texts if title in each.get_text() and not each.get_parse_math()]
 
 
-def test_a_moment_of_a_file_has_its_supports_where_they_have_moved_to() -> None:
-    """A support that slides and turns, to first order; its far corners are cut off in the file."""
+def test_frame_of_file_contains_support_motion() -> None:
+    """A support that translates and rotates, to first order; its far corners are cut off in the file."""
     scene = scene_from_dict(turning_support())
     motion = scene.support_motion
     assert np.count_nonzero(motion.any(axis=1)) == 1
@@ -199,15 +199,15 @@ def test_a_moment_of_a_file_has_its_supports_where_they_have_moved_to() -> None:
     assert read.motion == pytest.approx(motion, rel=1e-5, abs=1e-8)
 
 
-def test_a_joint_with_associated_flow_slides_where_it_opens_by_its_dilatancy() -> None:
+def test_joint_that_opens_by_its_dilatancy_slides() -> None:
     scene = courses([[1], [1]])
     assert states(scene, 0.8, 0.6 * 0.8) == {JointState.SLIDE}
     assert states(scene, 0.5, 0.8) == {JointState.OPEN}
 
 
 @pytest.mark.parametrize("name", ["wall-w3", *(pytest.param(f"panel-{k:02d}", marks=pytest.mark.long) for k in (1, 4))])
-def test_in_limit_analysis_what_opens_by_its_dilatancy_slides(name: str) -> None:
-    """In the others no joint slides that a picture shows open: least opening of an open joint, largest of a sliding."""
+def test_joint_states_in_limit_analysis(name: str) -> None:
+    """Associated joints that slide open by their dilatancy; otherwise sliding joints open by at most `VISIBLE_JUMP`."""
     scene = published_scene(name)
     associated = mechanism_frame(scene, limit(scene))
     other = mechanism_frame(scene, run_model("limit-nonassociated", scene, 0.01))
@@ -218,11 +218,11 @@ def test_in_limit_analysis_what_opens_by_its_dilatancy_slides(name: str) -> None
     assert associated.opening[slides] == pytest.approx(
         scene.joint.friction * np.abs(associated.slip[slides]), abs=0.011
     )
-    assert (other.opening[other.state == JointState.SLIDE] <= VISIBLE).all()
-    assert (other.opening[other.state == JointState.OPEN] > VISIBLE).all()
+    assert (other.opening[other.state == JointState.SLIDE] <= VISIBLE_JUMP).all()
+    assert (other.opening[other.state == JointState.OPEN] > VISIBLE_JUMP).all()
 
 
-def test_an_outcome_without_a_mechanism_is_not_checked() -> None:
+def test_outcome_without_mechanism_is_not_checked() -> None:
     scene = panel()
     assert outcome_check(scene, Outcome("", "homog", "collapse", 0.5)) is None
     assert mechanism_warning(scene, Outcome("", "homog", "collapse", 0.5)) == ""

@@ -1,4 +1,4 @@
-"""Pictures of walls as a motion of their ground has left them."""
+"""Pictures of walls after a ground motion."""
 
 import itertools
 import math
@@ -11,7 +11,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 import runningbond as rb
-from runningbond.pictures.moved_wall import BESIDE, NOTHING, draw_moved, enlarged, extent_around, moved_shape
+from runningbond.pictures.moved_wall import MAX_DISTANCE, NEGLIGIBLE, draw_moved, enlarged, extent_around, moved_shape
 from runningbond.pictures.response import response_figure
 
 mpl.use("Agg")
@@ -24,8 +24,8 @@ def shaken(amplitude: float) -> rb.Wall:
     return rb.Wall.courses([[1]], **BLOCK, **SPRINGS, history=pulse)
 
 
-def test_a_block_is_drawn_where_it_lies() -> None:
-    """A quarter of a turn to the right about its foot: on its side, as large as it is."""
+def test_fallen_block_is_drawn_where_it_lies() -> None:
+    """Rotated by 90° to the right about its foot: it lies on its side in its true size."""
     scene = shaken(0.1).scene
     middle, foot = scene.blocks.centroid[0], scene.blocks.extent(0)[0] + [0.25, 0.0]
     motion = np.zeros((len(scene.blocks), 3))
@@ -36,7 +36,7 @@ def test_a_block_is_drawn_where_it_lies() -> None:
     assert [*low, *high] == pytest.approx([foot[0], foot[1], foot[0] + 1.0, foot[1] + 0.25])
 
 
-def test_what_hardly_moves_is_drawn_larger_and_what_flies_off_left_out() -> None:
+def test_small_motion_is_enlarged_and_distant_blocks_are_left_out() -> None:
     scene = shaken(0.1).scene
     motion = np.zeros((len(scene.blocks), 3))
     motion[0, 0] = 1e-4
@@ -45,12 +45,12 @@ def test_what_hardly_moves_is_drawn_larger_and_what_flies_off_left_out() -> None
     motion[0, 0] = 50.0
     left, right, _, _ = extent_around([moved_shape(scene, motion)])
     (start, _), (end, _) = scene.blocks.extent(scene.wall)
-    assert right - end < (BESIDE + 0.1) * scene.size
+    assert right - end < (MAX_DISTANCE + 0.1) * scene.size
     assert start - left < 0.1 * scene.size
 
 
 @pytest.mark.parametrize(("amplitude", "verdict", "walls"), [(0.2, "stands", 1), (1.0, "collapse", 2)])
-def test_a_response_shows_its_wall_as_it_gives_way_and_as_it_lies(amplitude: float, verdict: str, walls: int) -> None:
+def test_response_figure_shows_wall_at_collapse_and_at_end(amplitude: float, verdict: str, walls: int) -> None:
     wall = shaken(amplitude)
     response = wall.respond("dem-dynamic")
     assert response.verdict == verdict
@@ -62,17 +62,17 @@ def test_a_response_shows_its_wall_as_it_gives_way_and_as_it_lies(amplitude: flo
     assert np.asarray(block.get_paths()[0].vertices)[:4] == pytest.approx(shape.placed)
 
 
-def test_what_joints_give_is_not_drawn_as_a_wall_out_of_shape() -> None:
-    """A motion of next to nothing, which a large scale would make a ruin of."""
+def test_negligible_motion_is_not_enlarged() -> None:
+    """A large scale would show it as a ruin."""
     scene = shaken(0.1).scene
     motion = np.zeros((len(scene.blocks), 3))
-    motion[0, 0] = 0.9 * NOTHING * scene.blocks.tolerance
+    motion[0, 0] = 0.9 * NEGLIGIBLE * scene.blocks.tolerance
     assert moved_shape(scene, motion).scale == 1.0
-    motion[0, 0] = 1.1 * NOTHING * scene.blocks.tolerance
+    motion[0, 0] = 1.1 * NEGLIGIBLE * scene.blocks.tolerance
     assert enlarged(moved_shape(scene, motion)) == ", displacements × 10,900"
 
 
-def test_ties_are_drawn_where_their_ends_have_gone() -> None:
+def test_ties_are_drawn_between_displaced_ends() -> None:
     tie = {"from": [0.0, 0.5], "to": [0.25, 0.5], "area": 1e-4, "young": 2e11, "yield": 1e4}
     scene = shaken(0.1).with_(tie=[{**tie, "to": [2.0, 0.5]}]).scene
     motion = np.zeros((len(scene.blocks), 3))
@@ -83,8 +83,8 @@ def test_ties_are_drawn_where_their_ends_have_gone() -> None:
     assert np.column_stack(line.get_data()) == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.5]]))
 
 
-def test_charts_are_as_high_as_their_walls_need_and_titles_as_wide_as_their_axes() -> None:
-    """No band of white about a low wall, nor a title that runs over the picture beside it."""
+def test_figure_height_fits_wall_and_titles_do_not_overlap() -> None:
+    """No white band around a low wall, and no title that overlaps the next picture."""
     tall = shaken(0.2)
     low = tall.with_({"wall.courses": [[8, 8, 8]], "wall.block_height": 0.2})
     tall_one, low_one = tall.respond("dem-dynamic"), low.respond("dem-dynamic")
@@ -99,7 +99,7 @@ def test_charts_are_as_high_as_their_walls_need_and_titles_as_wide_as_their_axes
     assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
 
 
-def test_a_wall_that_falls_by_itself_is_drawn_as_it_was_built() -> None:
+def test_wall_that_falls_under_dead_load_is_drawn_undeformed() -> None:
     leaning = shaken(0.1).with_({"load.gravity": [9.0, -3.0]})
     response = leaning.respond("dem-dynamic")
     assert response.verdict == "infeasible"

@@ -1,4 +1,4 @@
-"""Pictures show what the arrays say, and a machine that cannot draw says so in a line."""
+"""Off-screen pictures match the arrays, and a machine that cannot draw reports this in one line."""
 
 import io
 import json
@@ -41,14 +41,14 @@ from tests.walls import content, courses, panel, write_toml
 
 
 @pytest.fixture(autouse=True)
-def no_error_of_vtk() -> Iterator[None]:
-    """What VTK reports as an error fails the test."""
+def vtk_errors_fail_test() -> Iterator[None]:
+    """Fail the test on errors reported by VTK."""
     with vtk_errors_raised():
         yield
 
 
-BLIND = {"__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent", "DISPLAY": "", "WAYLAND_DISPLAY": ""}
-"""Surroundings in which no driver for drawing without a screen is found."""
+NO_DRIVER = {"__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent", "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+"""Environment in which no driver for off-screen drawing is found."""
 
 drawing = pytest.mark.usefixtures("able_to_draw")
 
@@ -80,7 +80,7 @@ def pixel(extent: Extent, image: Any, at: Any) -> tuple[Any, Any]:
 
 
 def of_colour(image: Any, colour: Any, within: int = 12) -> Any:
-    """Which pixels have a colour, given as ``#rrggbb`` or as shares of one."""
+    """Mask of pixels with a colour, given as ``#rrggbb`` or as shares of 1."""
     wanted = [int(colour[i : i + 2], 16) for i in (1, 3, 5)] if isinstance(colour, str) else 255 * np.asarray(colour)
     return (np.abs(image - np.asarray(wanted)) <= within).all(axis=-1)
 
@@ -92,8 +92,8 @@ def mechanism(scene: Scene, outcome: Outcome) -> DeformedShape:
 
 
 @drawing
-def test_an_undeformed_wall_fills_its_outline_and_nothing_else(painter: Painter) -> None:
-    """Blocks from edge to edge of the wall to the pixel, white around it, and no joint coloured."""
+def test_undeformed_wall_fills_its_outline(painter: Painter) -> None:
+    """Blocks from edge to edge of the wall, white around it, and no coloured joint."""
     scene = panel()
     image, extent = paint(painter, undeformed_shape(scene))
     coloured = (image < 250).any(axis=-1)
@@ -110,8 +110,8 @@ def test_an_undeformed_wall_fills_its_outline_and_nothing_else(painter: Painter)
 
 @drawing
 @pytest.mark.parametrize("aside", [0.0, 0.0005, 0.0006, 0.0007, 0.002])
-def test_every_joint_is_seen_wherever_it_falls_between_pixels(painter: Painter, aside: float) -> None:
-    """Head joints of a wall that is moved by parts of a pixel, 4.6 mm: VTK drops lines that are too thin at some."""
+def test_joints_are_visible_at_any_pixel_offset(painter: Painter, aside: float) -> None:
+    """Head joints of a wall shifted by fractions of a pixel, 4.6 mm: VTK drops too thin lines at some offsets."""
     scene = courses([[1] * 5, [0.5, 1, 1, 1, 1, 0.5]], width=0.4, height=0.2)
     left, right = aside - 0.07774, aside + 2.66909
     extent = square_around((left, right, left, aside + 1.81441))
@@ -123,8 +123,8 @@ def test_every_joint_is_seen_wherever_it_falls_between_pixels(painter: Painter, 
 
 
 @drawing
-def test_what_a_block_encloses_stays_white(painter: Painter) -> None:
-    """A block over a door, L-shaped at its corners, and one that is a portal."""
+def test_openings_in_blocks_stay_white(painter: Painter) -> None:
+    """A block over a door, L-shaped at its corners, and one that encloses an opening."""
     scene = panel(
         wall__block_width=0.5,
         wall__block_height=0.2,
@@ -139,8 +139,8 @@ def test_what_a_block_encloses_stays_white(painter: Painter) -> None:
 
 
 @drawing
-def test_open_and_sliding_joints_are_seen_where_the_arrays_say(painter: Painter) -> None:
-    """At both faces of every open joint the colour of opening is near, and nowhere far from one; as for sliding."""
+def test_joint_states_are_drawn_at_their_joints(painter: Painter) -> None:
+    """The colour of a state appears only near joints in that state, and near both faces of every open joint."""
     scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], width=0.4, height=0.2)
     outcome = limit(scene)
     frame = mechanism_frame(scene, outcome)
@@ -162,8 +162,8 @@ def test_open_and_sliding_joints_are_seen_where_the_arrays_say(painter: Painter)
                 row, column = pixel(extent, image, along)
                 middle_row, middle_column = row[100], column[100]
                 window = there[middle_row - 3 : middle_row + 4, middle_column - 3 : middle_column + 4]
-                # An open joint's colour is drawn over a sliding one's, where their faces cross.
-                assert window.any() or state == JointState.SLIDE
+                if state == JointState.OPEN:  # where faces cross, its colour covers that of a sliding joint
+                    assert window.any()
                 for r, c in zip(row, column, strict=True):
                     near[max(r - 4, 0) : r + 5, max(c - 4, 0) : c + 5] = True
         assert not (there & ~near).any()
@@ -171,8 +171,8 @@ def test_open_and_sliding_joints_are_seen_where_the_arrays_say(painter: Painter)
 
 
 @drawing
-def test_blocks_have_the_colour_of_their_motion(painter: Painter) -> None:
-    """The upper of two blocks slides off: it alone moves, has the colour of the fastest, and is where it moved to."""
+def test_blocks_have_colour_of_their_motion(painter: Painter) -> None:
+    """The upper of two blocks slides off: it alone moves, has the colour of the fastest, and is drawn displaced."""
     scene = courses([[1], [1]], width=0.4, height=0.1, joint__cohesion=0.0)
     motion = np.zeros((3, 3))
     upper = int(np.argmax(scene.blocks.centroid[:, 1]))
@@ -203,7 +203,7 @@ def test_held_blocks_are_grey_and_courses_alternate(painter: Painter) -> None:
 
 
 @drawing
-def test_one_picture_leaves_no_trace_in_the_next(painter: Painter) -> None:
+def test_pictures_of_one_painter_are_independent(painter: Painter) -> None:
     scene = courses([[1, 1], [0.5, 1, 0.5]])
     before, _ = paint(painter, undeformed_shape(scene))
     paint(painter, mechanism(scene, limit(scene)))
@@ -212,7 +212,7 @@ def test_one_picture_leaves_no_trace_in_the_next(painter: Painter) -> None:
 
 
 @drawing
-def test_drawing_changes_nothing_that_is_drawn(painter: Painter) -> None:
+def test_drawing_does_not_change_shape(painter: Painter) -> None:
     scene = courses(
         [[1, 1], [0.5, 1, 0.5]],
         support__kind="corners",
@@ -224,14 +224,14 @@ def test_drawing_changes_nothing_that_is_drawn(painter: Painter) -> None:
     assert np.array_equal(first, again)
 
 
-def test_the_outline_goes_round_openings() -> None:
-    """A wall of 4 × 3 blocks with a hole of one: perimeter 2 (1.6 + 0.6) + 2 (0.4 + 0.2) m."""
+def test_outline_includes_openings() -> None:
+    """A wall of 4 × 3 blocks with one block missing: perimeter 2 (1.6 + 0.6) + 2 (0.4 + 0.2) m."""
     scene = courses([[1, 1, 1, 1], [1, -1, 1, 1], [1, 1, 1, 1]], width=0.4, height=0.2)
     length = sum(np.hypot(*np.diff(ring, axis=0).T).sum() for ring in outline(scene))
     assert length == pytest.approx(5.6, rel=1e-3)
 
 
-def test_brackets_are_told_as_they_are() -> None:
+def test_multiplier_text_states_bracket() -> None:
     lateral = panel()
     pushed = panel(load__live={"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}, support__kind="corners")
     assert is_force(pushed)
@@ -245,14 +245,14 @@ def test_brackets_are_told_as_they_are() -> None:
 
 
 @given(st.floats(0.01, 1e9))
-def test_numbers_that_are_told_have_four_digits_at_least(value: float) -> None:
+def test_printed_numbers_are_accurate(value: float) -> None:
     assert float(number(value).replace(",", "")) == pytest.approx(value, rel=5e-3 if value < 0.1 else 6e-4)
 
 
 @drawing
 @pytest.mark.parametrize("kind", ["base", "fixed-first-course", "corners", "pinned-corners"])
-def test_every_support_and_load_has_its_sign(painter: Painter, kind: str) -> None:
-    """Around the wall something is drawn where supports and loads are, and no text runs out of the picture."""
+def test_supports_and_loads_are_drawn_outside_wall(painter: Painter, kind: str) -> None:
+    """Something is drawn where supports and loads are, and nothing is cut off at the upper and lower edge."""
     point = {"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}
     scene = panel(support__kind=kind, load__live=point if "corners" in kind else {"kind": "lateral"})
     outcome = Outcome(
@@ -282,15 +282,17 @@ def test_every_support_and_load_has_its_sign(painter: Painter, kind: str) -> Non
 
 
 @drawing
-def test_a_joint_on_the_ground_is_seen_and_a_load_has_its_unit(painter: Painter) -> None:
-    """A block under one newton slides on its base: the line of that joint is not below the ground's."""
+def test_joint_on_ground_is_visible_and_load_has_unit(painter: Painter) -> None:
+    """The ground does not hide the joint below a sliding block; a load of one newton is labelled in N."""
     scene = courses([[1]], width=0.4, height=0.2)
     motion = np.zeros((len(scene.blocks), 3))
     motion[scene.wall, 0] = 1.0
     shape = DeformedShape.of_rigid_blocks(scene, motion, np.full(1, JointState.SLIDE), 0.6)
     axes = frame_figure(shape, "wall", "dem-static", painter).axes[0]
     (image,) = axes.images
-    assert all(one.get_zorder() < image.get_zorder() for one in axes.get_children() if one.get_label() == "support")
+    supports = [one for one in axes.get_children() if one.get_label() == "support"]
+    assert supports
+    assert all(one.get_zorder() < image.get_zorder() for one in supports)
     pixels = np.asarray(image.get_array())
     assert ((pixels[..., 3] == 0) == (pixels[..., :3] == 255).all(axis=2)).all()
     assert of_colour(pixels[..., :3], STATE_COLOURS[JointState.SLIDE]).any()
@@ -300,8 +302,8 @@ def test_a_joint_on_the_ground_is_seen_and_a_load_has_its_unit(painter: Painter)
 
 
 @drawing
-def test_a_film_shows_all_of_every_moment(painter: Painter) -> None:
-    """A block taken to the left and then, less far, to the right: both are in the picture, and in its key."""
+def test_film_extent_and_key_cover_all_frames(painter: Painter) -> None:
+    """A block moves to the left and then, less far, to the right: the picture has both positions and states."""
     scene = courses([[1]], width=0.4, height=0.2)
     shapes = []
     for way, state in ((-1.0, JointState.SLIDE), (0.3, JointState.DEBONDED)):
@@ -317,11 +319,11 @@ def test_a_film_shows_all_of_every_moment(painter: Painter) -> None:
     assert {"slides", "debonded"} <= {text.get_text() for text in key.get_texts()}
 
 
-# Folders and the command line
+# Result folders and the command line
 
 
 @drawing
-def test_a_result_folder_is_drawn_from_what_it_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_result_folder_is_drawn_without_scene_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write_toml(content(wall__length=0.48, wall__height=0.24), tmp_path / "wall.toml")
     folder = tmp_path / "result"
     assert command(["run", str(path), "--model", "limit", "--out", str(folder), "--json"]) == 0
@@ -344,8 +346,8 @@ def test_a_result_folder_is_drawn_from_what_it_holds(tmp_path: Path, capsys: pyt
     assert (np.abs(first - last).max(axis=-1) > 50).mean() > 0.01
 
 
-def test_a_series_that_cannot_be_written_costs_no_answer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Where a file stands in the way of the frames, the run goes on, its outcome is kept, and one line is said."""
+def test_series_that_cannot_be_written_keeps_outcome(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """If a file blocks the frames' folder, the run goes on, stores its outcome, and prints one line."""
     path = write_toml(
         content(wall__length=0.48, wall__height=0.12, joint__normal_stiffness=1e9, joint__shear_stiffness=4e8),
         tmp_path / "wall.toml",
@@ -362,23 +364,21 @@ def test_a_series_that_cannot_be_written_costs_no_answer(tmp_path: Path, capsys:
 
 
 @drawing
-def test_an_outcome_without_a_mechanism_is_no_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_render_without_mechanism_is_no_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     save_outcome(Outcome("wall", "limit", "unbounded"), tmp_path, scene=panel())
     assert render_folder(tmp_path) == []
     assert command(["render", str(tmp_path)]) == 0
     assert "no mechanism" in capsys.readouterr().out
 
 
-def test_a_folder_without_an_outcome_is_refused_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_folder_without_outcome_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["render", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert "holds no outcome" in error
 
 
-def test_a_folder_of_folders_is_refused_with_the_names_of_what_can_be_drawn(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_folder_of_results_is_refused_with_their_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for k in range(8):
         save_outcome(Outcome("wall", "limit", "unbounded"), tmp_path / f"wall-{k}" / "limit", scene=panel())
     assert command(["render", str(tmp_path)]) == 2
@@ -389,7 +389,7 @@ def test_a_folder_of_folders_is_refused_with_the_names_of_what_can_be_drawn(
     assert error.rstrip().endswith("and 2 more")
 
 
-def test_a_window_needs_a_screen(
+def test_window_needs_screen(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not sys.platform.startswith("linux"):
@@ -401,11 +401,11 @@ def test_a_window_needs_a_screen(
     assert "--view" in capsys.readouterr().err
 
 
-def test_a_machine_that_cannot_draw_says_so_and_keeps_the_numbers(
+def test_machine_that_cannot_draw_keeps_results(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Without a driver VTK ends the process: the one that tries, and a line is all that is seen of it."""
-    for name, value in BLIND.items():
+    """Without a driver VTK ends the process: that of a probe, so that only one line is printed."""
+    for name, value in NO_DRIVER.items():
         monkeypatch.setenv(name, value)
     why_not_drawn.cache_clear()
     try:
@@ -431,7 +431,7 @@ def test_a_machine_that_cannot_draw_says_so_and_keeps_the_numbers(
 @drawing
 @pytest.mark.parametrize("display", ["", *at_length(":77")])
 def test_drawing_needs_no_display(display: str) -> None:
-    """With DISPLAY empty, or naming a screen that is not there."""
+    """With DISPLAY empty, or naming a screen that does not exist."""
     assert (
         subprocess.run(
             [sys.executable, "-c", PROBE], env={**os.environ, "DISPLAY": display}, capture_output=True
@@ -460,8 +460,8 @@ def test_drawing_works_with_a_display() -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_waits_until_an_import_is_whole(number: signal.Signals) -> None:
-    """Broken off, those of VTK end the process."""
+def test_signal_is_delayed_until_import_is_complete(number: signal.Signals) -> None:
+    """Interrupted imports of VTK end the process."""
     done: list[int] = []
 
     def imports() -> None:

@@ -1,4 +1,4 @@
-"""Housner's block, integrated on its own: rotation θ about the corner it stands on, and the impact at θ = 0."""
+"""Housner's block, integrated independently: rotation θ about the corner it stands on, impact at θ = 0."""
 
 import math
 from collections.abc import Callable
@@ -15,7 +15,7 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class HousnerBlock:
-    """A block of half width b and half height h [m] under a pulse of a sine of amplitude A [m/s²] and period T [s]."""
+    """A block of half width b and half height h [m] under a sine pulse of amplitude A [m/s²] and period T [s]."""
 
     b: float = 0.25
     h: float = 1.0
@@ -30,11 +30,11 @@ class HousnerBlock:
 
     @property
     def restitution(self) -> float:
-        """Rate after an impact over that before (Housner 1963, Eq. 9, with the root)."""
+        """Ratio of the angular velocities after and before an impact (Housner 1963, Eq. 9, with the root)."""
         return 1 - 1.5 * math.sin(self.alpha) ** 2
 
     def overturns(self, amplitude: float, period: float, cycles: float) -> bool:
-        """Whether a pulse of so many cycles overturns it."""
+        """Whether a pulse with this number of cycles overturns the block."""
         return self.peak(amplitude, period, cycles) == math.inf
 
     def peak(self, amplitude: float, period: float, cycles: float) -> float:
@@ -82,7 +82,7 @@ class HousnerBlock:
 
 
 def edge(falls: Callable[[float], bool], about: float, width: float = 0.04, tolerance: float = 2e-3) -> float | None:
-    """Where a verdict changes, within a width about a scale."""
+    """Scale at which a verdict changes, by bisection within a relative width; None if it does not change there."""
     low, high = about * (1 - width), about * (1 + width)
     at_low = falls(low)
     if falls(high) == at_low:

@@ -1,7 +1,8 @@
-"""A column of rectangular blocks by non-smooth contact dynamics (Moreau 1988): rigid, with velocities that jump.
+"""A column of rectangular blocks by non-smooth contact dynamics (Moreau 1988): rigid, with velocity jumps.
 
 In each step h the velocities v⁺ = v⁻ + h (g − a) + M⁻¹ Hᵀ p have impulses p ≥ 0 at corners with gaps s such that
-0 ≤ p ⟂ u_n + s / h ≥ 0, and friction |p_t| ≤ μ p against the slip, by projected Gauss and Seidel. No bounce, no spring.
+0 ≤ p ⟂ u_n + s / h ≥ 0, and friction |p_t| ≤ μ p against the slip, by projected Gauss-Seidel iteration. There are no
+springs and no restitution.
 """
 
 import math
@@ -11,7 +12,7 @@ import numpy as np
 from runningbond.joints.compiled import kernel
 from runningbond.scene import Array
 
-NEAR, SWEEPS, SMALL = 0.02, 3000, 1e-13  # m; sweeps of Gauss and Seidel at most; and m/s at which they end
+NEAR, SWEEPS, SMALL = 0.02, 3000, 1e-13  # m; most Gauss-Seidel sweeps; and the change [m/s] that ends them
 
 
 @kernel
@@ -22,7 +23,7 @@ def _corner(x: float, y: float, turn: float, arm_x: float, arm_y: float) -> tupl
 
 @kernel
 def _find(at: Array, half: Array, rows: Array, between: Array, gap: Array) -> int:
-    """Write the contacts of blocks with what is below them, and count them: up to two corners of either."""
+    """Write the contacts of each block with the one below, up to two corners of either, and return their number."""
     count = 0
     for i in range(len(at)):
         below = i - 1
@@ -35,7 +36,7 @@ def _find(at: Array, half: Array, rows: Array, between: Array, gap: Array) -> in
             if on >= 0:
                 nx, ny = -math.sin(at[on, 2]), math.cos(at[on, 2])
                 dx, dy = x - at[on, 0], y - at[on, 1]
-                # Of two corners that lie on each other the upper block's is taken.
+                # Of two coincident corners only the upper block's counts.
                 if abs(dx * ny - dy * nx) > half[on, 0] + (1e-9 if upper else -1e-9):
                     continue
                 away = (dx * nx + dy * ny) * (1.0 if upper else -1.0) - half[on, 1]

@@ -1,14 +1,14 @@
-"""Two rigid blocks on one another that rock and do not slide, by Lagrange's equations on their own.
+"""Two stacked rigid blocks that rock and do not slide, by Lagrange's equations, independent of the suite.
 
-The patterns are those of Psycharis (1990): the upper block alone, both as one, both in one sense, or in opposite ones.
-In which a pair starts is found here from contacts that may open and press, but not pull.
+The patterns are those of Psycharis (1990): the upper block alone, both as one body, both in the same sense, or in
+opposite senses. The initial pattern follows from contacts that can open and press but not pull.
 
-θ1 and θ2 are the blocks' rotations, counter-clockwise; each stands on a corner of what is beneath, or on both. With
-the pivots' places s1 and s2 on the two bases, c1 = (−s1, h1), d = (s2 − s1, 2 h1), c2 = (−s2, h2) turned by θ,
+θ1 and θ2 are the blocks' rotations, counter-clockwise; each block stands on one corner or on both. With the pivots at
+s1 and s2 on the two bases, c1 = (−s1, h1), d = (s2 − s1, 2 h1), c2 = (−s2, h2) rotated by θ,
 
     r1 = (s1, 0) + R(θ1) c1,    r2 = (s1, 0) + R(θ1) d + R(θ2) c2,    Σ m (r̈ − f) · ∂r/∂θ + I θ̈ = 0
 
-under the field f = (−a, −g) in the frame of a ground that is accelerated by a.
+in the field f = (−a, −g) of a frame that moves with the ground's acceleration a.
 """
 
 import math
@@ -25,7 +25,7 @@ from .housner import GRAVITY
 
 
 class Pattern(NamedTuple):
-    """Corners on which the lower block, and the upper one on it, stand: −1 left, 1 right, 0 both."""
+    """Corners on which the lower block, and the upper block on it, stand: −1 left, 1 right, 0 both."""
 
     lower: int
     upper: int
@@ -46,14 +46,14 @@ def cross(left: Array, right: Array) -> float:
 
 @dataclass(frozen=True)
 class TwoBlocks:
-    """Half widths b and half heights h [m] of the lower and the upper block, of one density, on one axis."""
+    """Half widths b and half heights h [m] of the lower and the upper block, of equal density, on one axis."""
 
     b: tuple[float, float]
     h: tuple[float, float]
 
     @property
     def mass(self) -> Array:
-        """Per density and thickness."""
+        """Masses per density and thickness."""
         return np.asarray(4 * np.array(self.b) * np.array(self.h))
 
     @property
@@ -61,7 +61,7 @@ class TwoBlocks:
         return np.asarray(self.mass * (np.square(self.b) + np.square(self.h)) / 3)
 
     def accelerations(self, pattern: Pattern, ground: float, angle: Array, rate: Array) -> Array:
-        """θ̈1, θ̈2 [rad/s²] of a pattern."""
+        """θ̈1, θ̈2 [rad/s²] in a pattern."""
         m1, m2 = self.mass
         s1, s2 = pattern.lower * self.b[0], pattern.upper * self.b[1]
         field = np.array([-ground, -GRAVITY])
@@ -82,7 +82,7 @@ class TwoBlocks:
         return c1, d, turned(np.array([-s2, h2]), upper)
 
     def starts(self, ground: float) -> list[Pattern]:
-        """Patterns in which a pair at rest may start: joints open as they turn, and press within their length."""
+        """Patterns in which a pair at rest can start: joints open with the rotations, with pressure within them."""
         return [each for each in map(Pattern._make, product((-1, 0, 1), repeat=2)) if self._admissible(each, ground)]
 
     def _admissible(self, pattern: Pattern, ground: float) -> bool:
@@ -94,7 +94,7 @@ class TwoBlocks:
         weight = np.array([ground, GRAVITY])
         between = mass[1] * (alpha[0] * turned(d) + alpha[1] * turned(c2) + weight)
         under = mass[0] * (alpha[0] * turned(c1) + weight) + between
-        # Where the resultants cross the joints, from the moment about each centroid.
+        # Positions of the resultants in the joints, from the moment about each centroid.
         upper = (inertia[1] * alpha[1] - self.h[1] * between[0]) / between[1]
         on_lower = inertia[0] * alpha[0] + cross(np.array([upper, self.h[0]]), between)
         lower = (on_lower - self.h[0] * under[0]) / under[1]
@@ -102,7 +102,7 @@ class TwoBlocks:
         return bool(inside.all() and between[1] > 0 and under[1] > 0)
 
     def rotations(self, pattern: Pattern, ground: float, time: Array) -> Array:
-        """θ1 and θ2 ``(2, n)`` at some times since the ground began to move from rest, in a pattern to the end."""
+        """θ1 and θ2 ``(2, n)`` at times since the ground began to move from rest, in one pattern throughout."""
 
         def motion(_: float, y: Array) -> Array:
             return np.concatenate([y[2:], self.accelerations(pattern, ground, y[:2], y[2:])])

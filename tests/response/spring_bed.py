@@ -1,4 +1,4 @@
-"""A block on a bed of springs and dashpots that do not pull, integrated on its own."""
+"""A block on a bed of springs and dashpots without tension, integrated independently of the suite."""
 
 import math
 
@@ -18,7 +18,7 @@ def _rotations(
     pulse: tuple[float, float, float],
     time: tuple[float, int],
 ) -> Array:
-    """Rotation [rad] after each of so many time steps, by central differences."""
+    """Rotation [rad] after each of a number of time steps, by central differences."""
     (place, area), (h, mass, inertia), (k, beta, friction) = bed, block, joint
     (amplitude, omega, end), (dt, steps) = pulse, time
     x, y, turn = 0.0, -mass * GRAVITY / (k * area.sum()), 0.0

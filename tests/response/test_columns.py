@@ -1,4 +1,4 @@
-"""Columns, whose blocks' corners lie on each other: which block's side a contact lies on changes as they rock."""
+"""Columns with coincident block corners: the side on which a contact lies changes as they rock."""
 
 import math
 from collections.abc import Callable
@@ -47,16 +47,16 @@ def deforming(scene: Scene) -> BlockSystem:
     [(rigid, {}), (rigid, SOFTENING), (rigid, {"compressive_strength": 1e7}), (deforming, {}), (deforming, SOFTENING)],
 )
 @pytest.mark.parametrize("tilt", [0.1, -0.1])
-def test_a_contact_bears_what_it_bore_when_another_side_takes_over(
+def test_contact_force_is_continuous_when_its_side_changes(
     system_of: Callable[[Scene], BlockSystem], material: dict[str, float], tilt: float
 ) -> None:
-    """The corner of a tilted block is carried over that of the next one, pressed in by δ; then it bears its side.
+    """A tilted block's corner, pressed in by δ, passes a corner of the next block, which then bears on its side.
 
-    Shear along that side is another sum of the same way than along the first one, by δ sin θ, and no rate.
+    Shear along that side sums up the same motion differently, by δ sin θ; this difference is no slip rate.
     """
     scene = replace(column([[1]] * 4, **material), load=Load(live=(still(),)))
     system, depth, step = system_of(scene), 1e-4, 1e-8
-    right = 0.2 if tilt < 0 else -0.2  # from the centroid to the corner that rests
+    right = 0.2 if tilt < 0 else -0.2  # from the centroid to the supporting corner
     block = int(np.argmax(scene.blocks.centroid[:, 1]))
     motion = np.zeros(len(system.mass))
     turned = np.array([[math.cos(tilt), -math.sin(tilt)], [math.sin(tilt), math.cos(tilt)]])
@@ -81,13 +81,13 @@ def test_a_contact_bears_what_it_bore_when_another_side_takes_over(
         shears.append(tangential[pressed])
         motion[across] += step
     assert len(sides) == 2
-    # Of a spring, and, from the first step on, a dashpot that bears as much as that in a step.
+    # A spring and, from the first step on, a dashpot with as much force as the spring gains per step.
     assert np.diff(shears[1:]) == pytest.approx(np.diff(shears[1:3])[0], rel=0.02)
     assert abs(shears[1]) == pytest.approx(2 * STIFFNESS * step, rel=0.01)
 
 
-def test_a_column_that_only_sways_stands() -> None:
-    """Springs without friction calm down as slowly as their viscosity has it."""
+def test_swaying_column_stands() -> None:
+    """Without friction, oscillations decay only at the rate of the viscous damping."""
     glued = {"cohesion": 1e6, "fracture_energy_1": 100.0, "fracture_energy_2": 500.0}
     soft = {"normal_stiffness": 2e7, "shear_stiffness": 1.2e7}
     scene = column([[1]] * 5, **glued, **soft)
@@ -106,16 +106,16 @@ def test_a_column_that_only_sways_stands() -> None:
     ("material", "motion", "scale", "missed"),
     [({}, ("sine", 3.5, 0.656), 0.614, 1e-4), ({**SOFTENING, **SOFT}, ("half-sine", 40.0, 0.08), 1.0, 2e-3)],
 )
-def test_a_rocking_column_spends_no_energy_but_in_its_joints(
+def test_changing_contact_sides_in_a_rocking_column_loses_no_energy(
     material: dict[str, float],
     motion: tuple[str, float, float],
     scale: float,
     missed: float,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The change from side to side, some times in a rocking cycle, is no slip: 1.8 % of the work was missed so.
+    """The contact side changes several times per rocking cycle; counted as slip, this once missed 1.8 % of the work.
 
-    The law of joints that soften keeps a ledger of first order in the step.
+    The energy balance of the softening joint law is first order in the time step.
     """
     monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", math.inf)
     scene = column([[1], [0.5, 0.5]] * 2, **material)

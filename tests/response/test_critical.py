@@ -1,4 +1,4 @@
-"""Searches for the critical scale among responses that are known beforehand."""
+"""Searches for the critical scale among responses with known verdicts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -35,14 +35,14 @@ def known() -> Response:
     return follow(resting(SCENE), 0.01)
 
 
-Told = Callable[[float], tuple[ResponseVerdict, float]]
+KnownVerdict = Callable[[float], tuple[ResponseVerdict, float]]
 
 
 @pytest.fixture
-def search(monkeypatch: pytest.MonkeyPatch) -> Callable[[Told], Outcome]:
-    """The outcome of a search among responses of which a verdict is known, and the share of energy that is missed."""
+def search(monkeypatch: pytest.MonkeyPatch) -> Callable[[KnownVerdict], Outcome]:
+    """Outcome of a search among responses whose verdict and missing share of the energy are known functions of λ."""
 
-    def found(told: Told, tolerance: float = 0.02) -> Outcome:
+    def found(told: KnownVerdict, tolerance: float = 0.02) -> Outcome:
         def at(rest: Any, scale: float, **settings: Any) -> Response:
             verdict, missed = told(scale)
             drift = np.array([0.0, -0.1 * scale, 0.02 * scale])
@@ -56,15 +56,13 @@ def search(monkeypatch: pytest.MonkeyPatch) -> Callable[[Told], Outcome]:
     return found
 
 
-def stands_below(edge: float, missed: float = 0.0) -> Told:
+def stands_below(edge: float, missed: float = 0.0) -> KnownVerdict:
     return lambda scale: ("stands" if scale < edge else "collapse", missed)
 
 
 @pytest.mark.parametrize("edge", [0.3, 20.0])
-def test_the_bracket_is_as_narrow_as_it_is_asked_for_and_hardly_narrower(
-    edge: float, search: Callable[[Told], Outcome]
-) -> None:
-    """In its own scale; the multiplier is in its middle, and the largest drift of each scale is told, and the last."""
+def test_bracket_meets_the_tolerance_without_extra_runs(edge: float, search: Callable[[KnownVerdict], Outcome]) -> None:
+    """The tolerance is relative; the multiplier is the middle; each scale has its peak and its last drift."""
     outcome = search(stands_below(edge))
     assert outcome.status == "collapse"
     assert outcome.lower is not None
@@ -75,14 +73,16 @@ def test_the_bracket_is_as_narrow_as_it_is_asked_for_and_hardly_narrower(
     scales = outcome.curve[:, 1]
     assert outcome.curve[:, 0] == pytest.approx(2.0 * 0.1 * scales)  # of a block of 2 m
     assert outcome.path == pytest.approx(np.column_stack([scales < edge, 0.02 * scales]))
-    assert outcome.motion == pytest.approx(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]))  # as it began, by one
+    assert outcome.motion == pytest.approx(
+        np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    )  # the initial shape, scaled to one
     assert outcome.steps is not None
-    assert outcome.steps > 10 * len(scales)  # and those until it was at rest
+    assert outcome.steps > 10 * len(scales)  # and the steps until the wall was at rest
     assert "it stands again" not in outcome.message
 
 
-def test_scales_are_tried_from_a_twentieth_of_g_on(search: Callable[[Told], Outcome]) -> None:
-    """In steps of a quarter, to twice the first fall and no farther."""
+def test_scales_are_tried_from_a_twentieth_of_g(search: Callable[[KnownVerdict], Outcome]) -> None:
+    """In steps of a quarter, up to twice the first scale at which the wall falls."""
     scales = search(stands_below(1.0)).curve[:, 1]
     assert scales[0] == pytest.approx(START * UNIT)
     grid = scales[0] * RATIO ** np.arange(40)
@@ -91,8 +91,8 @@ def test_scales_are_tried_from_a_twentieth_of_g_on(search: Callable[[Told], Outc
     assert scales[scales > first] == pytest.approx(grid[(grid > first) & (grid <= BEYOND * first)])
 
 
-def test_a_wall_that_no_scale_brings_down_has_no_upper_one(search: Callable[[Told], Outcome]) -> None:
-    """They go up to fifty times g."""
+def test_wall_that_stands_at_all_scales_has_no_upper_bound(search: Callable[[KnownVerdict], Outcome]) -> None:
+    """Scales go up to fifty times g."""
     outcome = search(lambda scale: ("stands", 0.0))
     assert (outcome.status, outcome.upper) == ("undecided", None)
     assert outcome.lower == outcome.curve[-1, 1]
@@ -104,7 +104,7 @@ def test_a_wall_that_no_scale_brings_down_has_no_upper_one(search: Callable[[Tol
     assert "and rests at none" in doubtful.message
 
 
-def test_a_wall_that_falls_at_the_first_scale_is_tried_below_it(search: Callable[[Told], Outcome]) -> None:
+def test_wall_that_falls_at_the_first_scale_is_tried_below_it(search: Callable[[KnownVerdict], Outcome]) -> None:
     edge = START * UNIT / 7
     outcome = search(stands_below(edge))
     assert outcome.status == "collapse"
@@ -114,9 +114,7 @@ def test_a_wall_that_falls_at_the_first_scale_is_tried_below_it(search: Callable
 
 
 @pytest.mark.parametrize("end", ["lower", "upper"])
-def test_a_bracket_of_which_either_end_misses_energy_is_not_believed(
-    end: str, search: Callable[[Told], Outcome]
-) -> None:
+def test_bracket_fails_if_either_end_has_an_energy_error(end: str, search: Callable[[KnownVerdict], Outcome]) -> None:
     def told(scale: float) -> tuple[ResponseVerdict, float]:
         falls = scale >= 1.0
         return "collapse" if falls else "stands", 0.2 if falls == (end == "upper") else 0.0
@@ -126,16 +124,16 @@ def test_a_bracket_of_which_either_end_misses_energy_is_not_believed(
     assert "20.0% of the energy supplied is unaccounted for at λ = " in outcome.message
 
 
-def test_windows_run_from_the_first_scale_at_which_it_stands_again_to_the_last() -> None:
-    """What neither rests nor falls ends one, and what stands below the first fall is none."""
+def test_windows_span_the_scales_at_which_a_wall_stands_again() -> None:
+    """An undecided scale ends a window; scales below the first collapse form none."""
     verdicts: dict[float, ResponseVerdict] = dict.fromkeys((1.0, 1.1, 1.4, 1.5, 1.6, 1.8, 2.0), "stands")
     verdicts |= {1.2: "collapse", 1.3: "undecided", 1.7: "undecided", 1.9: "collapse"}
     tried = {scale: replace(known(), scale=scale, verdict=verdict) for scale, verdict in verdicts.items()}
     assert ScaleSearch(lambda scale: tried[scale], tried).windows() == [(1.4, 1.6), (1.8, 1.8), (2.0, 2.0)]
 
 
-def test_nothing_is_bisected_down_to_where_a_wall_neither_rests_nor_falls(search: Callable[[Told], Outcome]) -> None:
-    """Nothing would be known of where it begins to fall; of one such scale far below it does not matter."""
+def test_no_bisection_next_to_undecided_scales(search: Callable[[KnownVerdict], Outcome]) -> None:
+    """It would not locate the onset of collapse. A single undecided scale far below does not matter."""
     outcome = search(lambda scale: ("stands" if scale < 1 else "undecided" if scale < 2 else "collapse", 0.0))
     assert outcome.status == "undecided"
     assert np.diff(np.log(outcome.curve[:, 1])) == pytest.approx(np.log(RATIO))
@@ -145,7 +143,7 @@ def test_nothing_is_bisected_down_to_where_a_wall_neither_rests_nor_falls(search
     assert f"at all others but {unsure:.4f}, where it neither rests nor falls, below it" in outcome.message
 
 
-def test_of_a_wall_that_falls_at_every_scale_no_lower_one_is_known(search: Callable[[Told], Outcome]) -> None:
+def test_wall_that_falls_at_every_scale_has_no_lower_bound(search: Callable[[KnownVerdict], Outcome]) -> None:
     outcome = search(lambda scale: ("collapse", 0.0))
     assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", None, outcome.curve[0, 1])
     assert outcome.curve[0, 1] < 1e-9 * LARGEST_SCALE * UNIT

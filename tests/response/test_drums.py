@@ -1,4 +1,4 @@
-"""Columns of drums under pulses, beside non-smooth contact dynamics: another method, without springs."""
+"""Columns of drums under pulses, compared with non-smooth contact dynamics, a method without springs."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ GRAVITY, STEP, EVERY = 9.81, 2e-5, 50
 
 
 def column(half: list[tuple[float, float]], friction: float, amplitude: float, period: float) -> Scene:
-    """Blocks of half widths and half heights [m], one on another, under a sine."""
+    """Stacked blocks of half widths and half heights [m] under a sine."""
     height, drums = 0.0, []
     for b, h in half:
         drums.append(rectangle(-b, height, 2 * b, 2 * h))
@@ -35,19 +35,19 @@ def column(half: list[tuple[float, float]], friction: float, amplitude: float, p
     [
         ([(0.25, 0.25)] * 3, 0.35, 5.0, 0.38, "stands"),
         *at_length(
-            ([(0.25, 0.5)], 0.4, 7.0, 2.0, "stands"),  # slides and rocks at once
+            ([(0.25, 0.5)], 0.4, 7.0, 2.0, "stands"),  # slides and rocks at the same time
             ([(0.25, 0.5)] * 2, 0.6, 4.0, 1.5, "stands"),
             ([(0.2, 0.2)] * 4, 0.7, 5.0, 1.5, "collapse"),
         ),
     ],
 )
-def test_drums_move_as_rigid_ones_with_velocities_that_jump(
+def test_drums_follow_nonsmooth_contact_dynamics(
     half: list[tuple[float, float]], friction: float, amplitude: float, span: float, verdict: str
 ) -> None:
-    """Ways of all upper corners to 2 % of the farthest, through impacts and into the fall.
+    """Displacements of all upper corners to 2 % of the largest, through impacts and into the fall.
 
-    Of drums that slide as they strike, those of 0.35, the way up to their first blow is compared: which corner slips in
-    it depends on which is hit first, which rigid blocks leave open.
+    For drums that slide during impacts (friction 0.35) only the time until the first impact is compared: which corner
+    slips then depends on which is hit first, and rigid blocks leave that undetermined.
     """
     scene = column(half, friction, amplitude, 0.6)
     size = np.array(half)

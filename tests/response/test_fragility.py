@@ -16,8 +16,8 @@ from runningbond.tables import table
 
 
 @pytest.mark.long
-def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
-    """Half sines that differ in nothing but the unit they are written in bring it down at one peak acceleration."""
+def test_fragility_of_a_block_over_scaled_copies_of_a_record(tmp_path: Path) -> None:
+    """Half sines that differ only by a factor overturn the block at the same peak acceleration."""
     time, values = pulse("half-sine", 1.0, 1.0)
     for k, factor in enumerate((0.5, 1.0)):
         rows = np.column_stack([time[::10], factor * values[::10, 0]])
@@ -41,14 +41,14 @@ def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
     assert found.probability(found.median * np.array([0.5, 1.0, 2.0])) == pytest.approx([0, 0.5, 1], abs=1e-3)
     again = rb.fragility(wall, records, "dem-dynamic", tolerance=0.05, folder=tmp_path / "kept", jobs=1)
     assert np.array_equal(again.intensity, found.intensity)
-    with pytest.raises(rb.SceneError, match="nowhere.csv: .*nowhere.csv"):  # and why it was refused
+    with pytest.raises(rb.SceneError, match="nowhere.csv: .*nowhere.csv"):  # and the reason
         rb.fragility(wall, [records[0], tmp_path / "nowhere.csv"], "dem-dynamic", tolerance=0.05, jobs=1)
     with pytest.raises(rb.SceneError, match="records = .*: must be a list of files"):
         rb.fragility(wall, str(records[0]), "dem-dynamic")
 
 
-def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
-    """The normal distribution of the logarithm: none at none, a sixth at a dispersion below the median."""
+def test_fragility_takes_only_non_negative_intensities() -> None:
+    """Normal distribution of the logarithm: zero at intensity zero, Φ(−1) one dispersion below the median."""
     runs = table({"status": ["collapse"]})
     found = rb.Fragility(np.array([0.5]), np.zeros(0), 0.5, 0.4, (0.4, 0.6), runs, 0)
     probability = found.probability(np.array([0.0, 0.5 * np.exp(-0.4), 0.5, np.inf]))
@@ -62,13 +62,13 @@ def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
             found.probability(bad)  # type: ignore[arg-type]
 
 
-def test_a_wall_without_a_record_has_no_fragility() -> None:
+def test_wall_without_a_record_has_no_fragility() -> None:
     with pytest.raises(rb.SceneError, match="load.history.file: is missing"):
         rb.fragility(rb.read("panel-01"), ["a.csv"], "dem-dynamic")
 
 
-def test_records_under_which_the_wall_stands_count_as_bounds_from_below() -> None:
-    """A log-normal sample known up to a level gives its median and dispersion back; leaving the rest out does not."""
+def test_records_without_collapse_count_as_lower_bounds() -> None:
+    """A log-normal sample censored at a level returns its median and dispersion; dropping the rest does not."""
     n, median, dispersion = 400, 0.5, 0.4
     sample = median * np.exp(dispersion * norm.ppf((np.arange(n) + 0.5) / n))
     for level in (0.5, 0.7):
@@ -80,15 +80,15 @@ def test_records_under_which_the_wall_stands_count_as_bounds_from_below() -> Non
         assert abs(found[1] - dispersion) < 0.1 * abs(known[1] - dispersion)
 
 
-def test_all_records_known_have_the_mean_and_deviation_of_their_logarithms() -> None:
+def test_uncensored_fit_is_the_mean_and_deviation_of_the_logarithms() -> None:
     logs = np.array([-0.7, 0.1, 0.2, 0.9])
     found = fitted(np.exp(logs), np.zeros(4, dtype=bool))
     assert found == pytest.approx((np.exp(logs.mean()), logs.std()))
 
 
 @pytest.mark.parametrize("n", [5, 12])
-def test_the_interval_of_few_records_holds_the_median_as_often_as_it_says(n: int) -> None:
-    """In 90 % of log-normal samples. Records drawn again alone held it in 79 % of samples of 5, and 86 % of 12."""
+def test_interval_of_few_records_has_its_nominal_coverage(n: int) -> None:
+    """In 90 % of log-normal samples. Plain resampling covered the median in 79 % of samples of 5, and 86 % of 12."""
     random, none, held = np.random.default_rng(7), np.zeros(n, dtype=bool), 0
     for seed in range(400):
         low, high = interval_of_median(random.lognormal(size=n), none, seed, draws=200)
@@ -97,16 +97,16 @@ def test_the_interval_of_few_records_holds_the_median_as_often_as_it_says(n: int
 
 
 @pytest.mark.parametrize("n", [6, 12])
-def test_the_interval_of_log_normal_levels_is_students(n: int) -> None:
-    """As wide as exp(± t s / √n) at 90 %, t of n − 1 degrees of freedom."""
+def test_interval_of_log_normal_levels_is_students(n: int) -> None:
+    """Its width is that of exp(± t s / √n) at 90 %, with t for n − 1 degrees of freedom."""
     logs = np.random.default_rng(3).standard_normal(n)
     low, high = interval_of_median(np.exp(logs), np.zeros(n, dtype=bool), seed=1, draws=20_000)
     exact = student.ppf(0.95, n - 1) * logs.std(ddof=1) / np.sqrt(n)
     assert np.log(high / low) == pytest.approx(2 * exact, rel=0.02)
 
 
-def test_the_interval_is_as_wide_as_falls_are_few_and_not_records(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of eight falls, and four records whose wall stands at next to nothing, which say nothing of its median."""
+def test_interval_width_depends_on_the_number_of_falls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Eight falls, and four records that stand at negligible levels and do not inform the median."""
 
     def of_falls(level: Any, stands: Any) -> tuple[float, float]:
         logs = np.log(level[~stands])
@@ -115,27 +115,25 @@ def test_the_interval_is_as_wide_as_falls_are_few_and_not_records(monkeypatch: p
     logs, stands = np.random.default_rng(3).standard_normal(8), np.arange(12) >= 8
     levels = np.append(np.exp(logs), np.full(4, 1e-6))
     assert fitted(levels, stands) == pytest.approx(of_falls(levels, stands), rel=1e-3)
-    monkeypatch.setattr("runningbond.fragilities.fitted", of_falls)  # the same, and quick
+    monkeypatch.setattr("runningbond.fragilities.fitted", of_falls)  # same result, faster
     few, many = (interval_of_median(levels[:n], stands[:n], seed=2, draws=20_000) for n in (8, 12))
     assert np.log(many[1] / many[0]) > np.log(few[1] / few[0])
 
 
-def test_of_one_fall_no_median_is_known() -> None:
+def test_one_fall_gives_no_median() -> None:
     assert fitted(np.array([0.2, 0.6, 0.6]), np.array([False, True, True])) == (np.inf, 0.0)
 
 
-def test_an_interval_without_an_upper_end_stays_so() -> None:
+def test_interval_may_be_unbounded_above() -> None:
     levels = np.array([0.2, 0.3, 0.6, 0.6, 0.6])
     low, high = interval_of_median(levels, levels > 0.5, seed=0, draws=30)
     assert 0 < low < fitted(levels, levels > 0.5)[0] < high == np.inf
 
 
-def test_a_fragility_takes_records_that_never_bring_the_wall_down(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """By λ: two falls, two that stand to the last scale tried, one that broke and one that fell at every scale.
+def test_fragility_uses_records_that_never_bring_the_wall_down(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """By λ: two falls, two that stand to the last scale, one failed run and one that fell at every scale.
 
-    Nor is anything known of one that neither rests nor falls between two scales, and of one that rests at none.
+    A record that is undecided between two scales, and one under which the wall never comes to rest, are left out.
     """
     rows: dict[str, list[Any]] = {
         "status": ["collapse", "undecided", "collapse", "undecided", "failed", *["undecided"] * 3],
@@ -145,7 +143,7 @@ def test_a_fragility_takes_records_that_never_bring_the_wall_down(
     }
     monkeypatch.setattr("runningbond.fragilities.sweep", lambda *_, **__: table(rows))
     for name in (records := [str(tmp_path / f"{k}.csv") for k in range(8)]):
-        Path(name).write_text("time,x,y\n0,0,0\n0.5,0.15,-0.2\n1,0,0\n")  # 0.25 g aslant
+        Path(name).write_text("time,x,y\n0,0,0\n0.5,0.15,-0.2\n1,0,0\n")  # 0.25 g, inclined
     size: dict[str, Any] = {
         "block_width": 0.5,
         "block_height": 1.0,

@@ -1,4 +1,4 @@
-"""What a wall is given of its record, and how it rests before."""
+"""Ground motion applied to a wall, and its state of rest before the record."""
 
 import math
 from typing import Any
@@ -18,8 +18,8 @@ TIME = np.arange(0.0, 0.201, 0.02)
 VALUES = np.random.default_rng(2).uniform(-4.0, 4.0, (len(TIME), 2)) * [1.0, 0.2]
 
 
-def given(history: History, scale: float, times: Array) -> tuple[Array, Array, Ground]:
-    """Times to which a block was brought, and the velocities that it had been given there; its ground."""
+def applied(history: History, scale: float, times: Array) -> tuple[Array, Array, Ground]:
+    """Times to which a block was integrated, the ground velocities applied by then, and its `Ground`."""
     rest = resting(block(0.25, 1.0, history, stiffness=1e10))
     state = rest.state.copy()
     ground = Ground(Run(rest.system, local=0.0, viscous=rest.viscous), history, scale, state.time)
@@ -33,10 +33,10 @@ def given(history: History, scale: float, times: Array) -> tuple[Array, Array, G
 
 
 @pytest.mark.parametrize("rows", [0.003, 0.05])
-def test_a_wall_is_given_the_velocity_of_its_record_whenever_it_is_asked_for(rows: float) -> None:
-    """Within intervals of `LONGEST` as far off it as a chord is of a parabola, and at the end of the record not."""
+def test_applied_ground_velocity_follows_the_record(rows: float) -> None:
+    """Within intervals of `LONGEST` up to the error of a chord for a parabola; exact at the end of the record."""
     history = History(TIME, VALUES)
-    times, velocity, ground = given(history, 1.5, np.arange(rows, 0.3, rows))
+    times, velocity, ground = applied(history, 1.5, np.arange(rows, 0.3, rows))
     jerk = 1.5 * float(np.abs(np.diff(VALUES, axis=0)).max()) / 0.02
     steps = LONGEST + ground.run.dt
     assert velocity == pytest.approx(1.5 * history.velocity(times), abs=jerk * steps**2 / 8)
@@ -44,19 +44,19 @@ def test_a_wall_is_given_the_velocity_of_its_record_whenever_it_is_asked_for(row
     assert ground.acceleration(0.02) == pytest.approx(1.5 * VALUES[1])
 
 
-def test_ground_that_moves_at_once_has_its_velocity_after_a_step_and_stops_after_one() -> None:
+def test_sudden_ground_velocity_is_reached_and_removed_in_one_step() -> None:
     """A displacement along a straight line, to 0.05 m in 0.1 s."""
     time = np.linspace(0.0, 0.1, 11)
-    bent = 0.5 * time + 1e-3 * time**2  # a record is to have an acceleration
+    bent = 0.5 * time + 1e-3 * time**2  # a record must have some acceleration
     history = History(time, np.column_stack([bent, 0 * time]), "displacement")
-    _, velocity, ground = given(history, 1.0, np.array([0.0, 2e-4, 0.05, 0.0999, 0.1002]))
+    _, velocity, ground = applied(history, 1.0, np.array([0.0, 2e-4, 0.05, 0.0999, 0.1002]))
     assert ground.run.dt < 5e-4
     assert velocity[0].tolist() == [0.0, 0.0]
     assert velocity[1:4, 0] == pytest.approx(0.5, rel=1e-3)
     assert velocity[-1] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-def test_a_wall_rests_without_velocity_and_its_ground_bears_its_weight() -> None:
+def test_wall_at_rest_has_no_velocity_and_its_ground_carries_the_weight() -> None:
     scene = block(0.25, 1.0, still())
     rest = resting(scene)
     assert not rest.state.velocity.any()
@@ -68,8 +68,8 @@ def test_a_wall_rests_without_velocity_and_its_ground_bears_its_weight() -> None
     assert ground.momentum(rest.state) == pytest.approx(float(scene.mass[0]) * ground.velocity)
 
 
-def test_the_top_of_a_wall_is_its_highest_corners() -> None:
-    """Of three towers the outer ones of those that are as high, wherever the ground is; a swing is of its height."""
+def test_top_of_a_wall_is_its_outermost_highest_corners() -> None:
+    """Three towers, two of them equally high, on ground at y = 1 m; the swing time follows from the height."""
     towers: list[Any] = [[x, y, x + 0.5, y + h] for x, y, h in ((0, 1, 2), (1, 1, 3), (2, 1, 3))]
     outlines = [[[a, b], [c, b], [c, d], [a, d]] for a, b, c, d in towers]
     history = {"pulse": {"kind": "half-sine", "amplitude": 0.1, "period": 0.01}, "quantity": "acceleration"}

@@ -1,4 +1,4 @@
-"""``runningbond respond``: what it says of walls that fall by themselves, and what it leaves in a folder."""
+"""``runningbond respond``: its report for walls that collapse under dead load, and the files it leaves."""
 
 import json
 from pathlib import Path
@@ -22,7 +22,7 @@ STIFF = {"joint__normal_stiffness": 1e9, "joint__shear_stiffness": 1e9}
 
 @pytest.fixture
 def ask(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Any:
-    """Run a command on a block, into a folder; its output. All end well."""
+    """Run a command on a block, with a folder for its results; return its output. All succeed."""
 
     def asked(name: str, out: Path, *options: str, **changes: Any) -> str:
         path = write_toml(content(**SIZE, **STIFF, **changes), tmp_path / "wall.toml")
@@ -32,7 +32,7 @@ def ask(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Any:
     return asked
 
 
-def test_a_wall_that_falls_under_its_weight_is_infeasible_to_both_commands(ask: Any, tmp_path: Path) -> None:
+def test_wall_that_falls_under_dead_load_is_infeasible_for_both_commands(ask: Any, tmp_path: Path) -> None:
     run = json.loads(ask("run", tmp_path / "run", "--json", **LEANING))
     response = json.loads(ask("respond", tmp_path / "respond", "--json", **LEANING))
     assert run["status"] == response["verdict"] == "infeasible"
@@ -42,8 +42,8 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible_to_both_commands(ask: 
     assert not (tmp_path / "respond").exists()
 
 
-def test_a_folder_holds_what_was_written_there_last_and_nothing_older(ask: Any, tmp_path: Path) -> None:
-    """Over the run of a static wall a response, over that a run, and at last a wall that falls by itself."""
+def test_folder_holds_only_the_last_result(ask: Any, tmp_path: Path) -> None:
+    """A static run, a response, a run again, and a wall that collapses under dead load, all into one folder."""
     out = tmp_path / "out"
 
     def written(name: str, **changes: Any) -> set[str]:
@@ -58,8 +58,8 @@ def test_a_folder_holds_what_was_written_there_last_and_nothing_older(ask: Any, 
     assert written("respond", **LEANING) == set()
 
 
-def test_files_of_somebodys_own_stay(ask: Any, tmp_path: Path) -> None:
-    """A response touches nothing in a folder that no command has used; a run no table that is not a command's."""
+def test_users_own_files_are_kept(ask: Any, tmp_path: Path) -> None:
+    """A response changes no file of a folder without results; a run keeps tables that no command wrote."""
     own = tmp_path / "own"
     own.mkdir()
     names = {"curve.csv", "draws.json", "arrays-of-sensors.npz", "film.gif", "rendering.png"}
@@ -77,17 +77,15 @@ def test_files_of_somebodys_own_stay(ask: Any, tmp_path: Path) -> None:
     assert not (own / "outcome.json").exists()
 
 
-def test_a_response_says_what_its_model_leaves_out(ask: Any, tmp_path: Path) -> None:
-    """As a run does; rigid blocks know nothing of their stiffness, which decides how far a soft column sways."""
+def test_response_reports_what_its_model_ignores(ask: Any, tmp_path: Path) -> None:
+    """As a run does; rigid blocks ignore Young's modulus, which decides how far a soft column sways."""
     soft = {"block__young": 1e9, "block__poisson": 0.2}
     told = json.loads(ask("respond", tmp_path / "out", "--json", **SHAKEN, **soft))["message"]
     assert told.endswith("; not taken into account: block.young, block.poisson")
 
 
-def test_a_response_is_filmed_from_its_folder_alone(
-    ask: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The film has every moment of the series; what of the folder is damaged is named, and nothing is drawn from it."""
+def test_response_is_rendered_from_its_folder(ask: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The film has every frame of the series; a damaged file in the folder is named and nothing is rendered from it."""
     out = tmp_path / "out"
     ask("respond", out, **SHAKEN)
     said = json.loads((out / "response.json").read_text())
@@ -104,12 +102,12 @@ def test_a_response_is_filmed_from_its_folder_alone(
 
 
 def without(name: str, listing: Path) -> str:
-    """A listing of frames without one of them."""
+    """A list of frames without one of its entries."""
     return "\n".join(line for line in listing.read_text().splitlines() if name not in line)
 
 
-def test_a_wall_that_leaves_its_ground_is_filmed(ask: Any, tmp_path: Path) -> None:
-    """Ground that falls faster than the wall touches nothing: there are no contacts to ask for joints' values."""
+def test_wall_that_leaves_its_ground_is_filmed(ask: Any, tmp_path: Path) -> None:
+    """When the ground falls faster than the wall, no contacts are left from which to take joint values."""
     record = tmp_path / "hop.txt"
     rows = [f"{k / 1000:.3f} 0.0 {-15.0 if k < 100 else 0.0}" for k in range(500)]
     record.write_text("\n".join(rows) + "\n")
@@ -120,8 +118,8 @@ def test_a_wall_that_leaves_its_ground_is_filmed(ask: Any, tmp_path: Path) -> No
     assert (out / "blocks.pvd").exists()
 
 
-def test_a_folder_changes_nothing_of_an_answer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A fall is filmed for a folder; drifts, energies and the blocks that are named are those of the fall."""
+def test_output_folder_does_not_change_the_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With a folder a fall is filmed on, but drifts, energies and named blocks are those at the fall."""
     pulse = {"kind": "sine", "amplitude": 8.0, "period": 0.5}
     tall = {"wall__length": 0.12, "wall__block_width": 0.12, "wall__block_height": 0.24, "wall__height": 0.48}
     history = {"pulse": pulse, "quantity": "acceleration"}

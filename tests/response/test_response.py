@@ -1,4 +1,4 @@
-"""What a response says of its rows, whose numbers are known."""
+"""Quantities derived from the rows of a response, whose numbers are known."""
 
 import math
 
@@ -20,7 +20,7 @@ ENERGY = np.array(
 def response(
     fallen: tuple[int, int, int] = (0, 0, 0), drift: tuple[float, float, float] = (0.0, -0.3, 0.1)
 ) -> Response:
-    """Three rows of a wall of two points."""
+    """Three rows for a wall with two points."""
     return Response(
         scene="wall",
         model="dem-dynamic",
@@ -43,17 +43,17 @@ def response(
     )
 
 
-def test_what_the_ledger_misses_is_what_was_supplied_less_what_there_is() -> None:
-    """4 J less 3.75 J, and 2 J less 1.75 J; of works that went 10 J and 8 J far, the ground's and the weight's."""
+def test_ledger_residual_is_supplied_less_present_energy() -> None:
+    """4 J less 3.75 J, and 2 J less 1.75 J; ground and weight did 10 J and 8 J of work, counting either sign."""
     assert supplied(ENERGY).tolist() == [0.0, 4.0, 2.0]
     assert response().residual.tolist() == [0.0, 0.25, 0.25]
     assert unaccounted(ENERGY, 0.0) == pytest.approx(0.25 / 18)
-    assert unaccounted(ENERGY, 50.0) == pytest.approx(0.25 / 50)  # next to nothing was supplied
+    assert unaccounted(ENERGY, 50.0) == pytest.approx(0.25 / 50)  # little was supplied
     assert unaccounted(np.zeros((2, 6)), 0.0) == 0.0
 
 
-def test_a_response_counts_until_a_block_has_fallen() -> None:
-    """With the row in which it has."""
+def test_response_counts_until_a_block_has_fallen() -> None:
+    """Including the row in which the block has fallen."""
     assert until_fallen(ENERGY, np.array([0, 1, 1])).tolist() == ENERGY[:2].tolist()
     assert until_fallen(ENERGY, np.zeros(3, dtype=int)) is ENERGY
     for fallen, peak in (((0, 0, 0), 0.4), ((0, 1, 2), 0.3), ((1, 1, 2), 0.1)):
@@ -61,7 +61,7 @@ def test_a_response_counts_until_a_block_has_fallen() -> None:
         assert (found.peak_drift, found.residual_drift) == (peak, 0.4)
 
 
-def test_a_table_of_a_response_has_each_number_in_the_column_of_its_name() -> None:
+def test_response_table_has_its_numbers_in_named_columns() -> None:
     columns = response((0, 0, 1)).columns()
     assert columns["time [s]"].tolist() == [0.1, 0.2, 0.3]
     assert (columns["ground x [m/s²]"].tolist(), columns["ground y [m/s²]"].tolist()) == ([1, 3, 5], [2, 4, 6])

@@ -1,4 +1,4 @@
-"""A block that rocks beside Housner's, and one that slides beside Newmark's."""
+"""A rocking block compared with Housner's, and a sliding block with Newmark's."""
 
 import math
 from dataclasses import replace
@@ -30,9 +30,9 @@ FOLLOW = import_module("runningbond.response.follow")
 
 @cache
 def rocking(share: float) -> tuple[Array, float]:
-    """Times of two passages through the middle and the turning points between them, in α; energy left unaccounted for.
+    """Times of three passages through θ = 0, the two turning points between in α, and the energy error.
 
-    Let go about its right corner at a share of the angle at which it would fall.
+    The block is released about its right corner at a share of the angle at which it would overturn.
     """
     system = finite_system(with_impacts(block(BLOCK.b, BLOCK.h, still())))
     angle = -share * BLOCK.alpha
@@ -53,10 +53,10 @@ def rocking(share: float) -> tuple[Array, float]:
 
 
 def quarter(share: float) -> float:
-    """Time from rest at a share of α to the middle, from the energy, without small angles."""
+    """Time from rest at a share of α to θ = 0, from the energy, without small angles."""
     alpha, start = BLOCK.alpha, share * BLOCK.alpha
 
-    def rate(u: float) -> float:  # θ = θ0 (1 − u²) takes the root out of the turning point
+    def rate(u: float) -> float:  # θ = θ0 (1 − u²) removes the singularity at the turning point
         theta = start * (1 - u * u)
         return 2 * start * u / math.sqrt(2 * BLOCK.p**2 * (math.cos(alpha - start) - math.cos(alpha - theta)))
 
@@ -65,17 +65,14 @@ def quarter(share: float) -> float:
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
 def test_free_rocking_has_housners_period(share: float) -> None:
-    """A quarter of it from the start to the middle, to 1e-3; for slender blocks arccosh(1 / (1 − θ0/α)) / p."""
+    """Quarter period from release to θ = 0, to 1e-3; for slender blocks arccosh(1 / (1 − θ0/α)) / p."""
     found, _ = rocking(share)
     assert found[0] == pytest.approx(quarter(share), rel=1e-3)
     assert found[0] == pytest.approx(math.acosh(1 / (1 - share)) / BLOCK.p, rel=0.01)
 
 
 def quarter_of(scene: Scene, start: float) -> tuple[float, float]:
-    """Time [s] in which a block comes to the middle that is let go about its right corner at an angle, a negative one.
-
-    And the share of the energy given to it that the ledger misses.
-    """
+    """Time [s] from release about the right corner at a negative angle to θ = 0, and the relative energy error."""
     system = finite_system(with_impacts(scene))
     motion, arm = np.zeros(len(system.mass)), np.array([-BLOCK.b, BLOCK.h])
     turn = np.array([[math.cos(start), -math.sin(start)], [math.sin(start), math.cos(start)]])
@@ -91,11 +88,11 @@ def quarter_of(scene: Scene, start: float) -> tuple[float, float]:
     return state.time - after, abs(missed) / (run.dead_work(state) + given)
 
 
-def test_a_dead_load_at_its_top_sways_with_a_block_that_rocks() -> None:
-    """A quarter period from the energy, I θ'² / 2 = W (height of the middle) + P (height of where P is), to 1e-3.
+def test_dead_load_on_top_moves_with_a_rocking_block() -> None:
+    """Quarter period from the energy, I θ'² / 2 = W (height of the middle) + P (height of its point), to 1e-3.
 
-    Let go about the right corner at half of the angle at which its weight W alone would fall, with P = W / 4 above
-    that corner and W / 2 above the other one, which presses back for longer.
+    Released about the right corner at half the angle at which its weight W alone would overturn it, with P = W / 4
+    above that corner and W / 2 above the other one, which acts as a restoring load for longer.
     """
     b, h, start = BLOCK.b, BLOCK.h, -BLOCK.alpha / 2
     bare = block(b, h, still())
@@ -103,11 +100,11 @@ def test_a_dead_load_at_its_top_sways_with_a_block_that_rocks() -> None:
     loads = tuple(PointLoad((x, 2 * h), (0.0, -share * weight)) for x, share in ((0.0, 0.5), (2 * b, 0.25)))
     found, missed = quarter_of(replace(bare, load=replace(bare.load, dead=loads)), start)
 
-    def height(theta: float) -> float:  # of the loads, in weights: points at (-x, y) from the corner
+    def height(theta: float) -> float:  # of the loads, in weights; points at (-x, y) from the corner
         points = ((1.0, b, h), (0.5, 2 * b, 2 * h), (0.25, 0.0, 2 * h))
         return sum(share * (y * math.cos(theta) + x * math.sin(theta)) for share, x, y in points)
 
-    def rate(u: float) -> float:  # θ = θ0 (1 − u²) takes the root out of the turning point
+    def rate(u: float) -> float:  # θ = θ0 (1 − u²) removes the singularity at the turning point
         theta = -start * (1 - u * u)
         inertia = 4 / 3 * (b * b + h * h)
         return -start * 2 * u / math.sqrt(2 * GRAVITY * (height(-start) - height(theta)) / inertia)
@@ -117,12 +114,12 @@ def test_a_dead_load_at_its_top_sways_with_a_block_that_rocks() -> None:
 
 
 @pytest.mark.parametrize("yields", [1e9, 0.5])
-def test_a_tie_at_its_top_draws_back_a_block_that_rocks(yields: float) -> None:
-    """A quarter period from the energy, I θ'² / 2 = W (height of the middle) + (energy of the tie), to 1e-3.
+def test_tie_at_the_top_restores_a_rocking_block(yields: float) -> None:
+    """Quarter period from the energy, I θ'² / 2 = W (height of the middle) + (energy of the tie), to 1e-3.
 
-    Let go about the right corner at half of the angle at which it would fall, with a tie from its upper left corner to
-    an anchor as far to the left as it is high. Elastic ties draw with W / 2 there; one that yields at half of that is
-    yielded to that place at the start and goes slack on the way back.
+    Released about the right corner at half the overturning angle, with a tie from its upper left corner to an anchor as
+    far to the left as the block is high. The force of an elastic tie is W / 2 there; a tie with half that yield force
+    starts with the corresponding plastic elongation and goes slack on the way back.
     """
     b, h, start = BLOCK.b, BLOCK.h, BLOCK.alpha / 2
     bare = block(b, h, still())
@@ -144,7 +141,7 @@ def test_a_tie_at_its_top_draws_back_a_block_that_rocks(yields: float) -> None:
         tension = max(0.0, most - stiffness * (elongation(start) - elongation(theta)))
         return weight * (h * math.cos(theta) + b * math.sin(theta)) + tension**2 / (2 * stiffness)
 
-    def rate(u: float) -> float:  # θ = θ0 (1 − u²) takes the root out of the turning point
+    def rate(u: float) -> float:  # θ = θ0 (1 − u²) removes the singularity at the turning point
         inertia = weight / GRAVITY * 4 / 3 * (b * b + h * h)
         return start * 2 * u / math.sqrt(2 * (energy(start) - energy(start * (1 - u * u))) / inertia)
 
@@ -153,10 +150,10 @@ def test_a_tie_at_its_top_draws_back_a_block_that_rocks(yields: float) -> None:
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
-def test_an_impact_takes_what_housners_takes(share: float) -> None:
-    """Two turning points from the energy before them; the ratio of rates is Housner's to 1 %.
+def test_impact_loses_the_energy_of_housners(share: float) -> None:
+    """Two turning points from the energy before them; the ratio of angular velocities is Housner's to 1 %.
 
-    Corners are springs with dashpots that do not pull: what is left of the bounce makes up the difference.
+    Corners are springs with dashpots without tension: the remaining bounce explains the difference.
     """
     found, _ = rocking(share)
     alpha = BLOCK.alpha
@@ -170,11 +167,12 @@ def test_an_impact_takes_what_housners_takes(share: float) -> None:
 
 
 @pytest.mark.parametrize(("b", "h"), [(0.25, 0.5), (0.5, 0.1)])
-def test_a_block_that_lands_flat_bounces_as_springs_with_dashpots_do(b: float, h: float) -> None:
-    """The ground falls from under it and stops: it flies as Galilei's, and leaves with e of its speed, to 0.06.
+def test_block_that_lands_flat_bounces_as_a_damped_spring(b: float, h: float) -> None:
+    """The ground drops away and stops: the block is in free fall, and rebounds with e of its speed, to 0.06.
 
-    Of a mass on a spring and a dashpot of ratio ξ that do not pull, e = exp(−ξ φ / √(1 − ξ²)) with the time ω φ of
-    contact, φ = π − atan(2 ξ √(1 − ξ²) / (1 − 2 ξ²)); ξ is 1 at the wall's highest frequency, and half of it at this.
+    For a mass on a spring and a dashpot of damping ratio ξ without tension, e = exp(−ξ φ / √(1 − ξ²)) with the contact
+    time ω φ, φ = π − atan(2 ξ √(1 − ξ²) / (1 − 2 ξ²)); ξ is 1 at the wall's highest frequency and lower in proportion
+    at this one.
     """
     time = np.array([0.0, 1e-4, 0.1, 0.1002, 0.2, 0.2001])
     fall = 2.5 * GRAVITY * np.array([0.0, -1.0, -1.0, 1.0, 1.0, 0.0])
@@ -198,7 +196,7 @@ def test_a_block_that_lands_flat_bounces_as_springs_with_dashpots_do(b: float, h
 
 
 SPECTRUM = [
-    # cycles, ω / p, smallest amplitude in g tan α above which it falls (or, −, stands again)
+    # cycles, ω / p, smallest amplitude in g tan α above which the block falls (negative: stands again)
     (0.5, 1.0, 1.3214),
     (0.5, 6.0, 3.8021),
     (1.0, 2.0, 1.2230),
@@ -206,7 +204,7 @@ SPECTRUM = [
     (1.0, 4.0, 5.3174),
     (1.0, 6.0, 4.5724),
 ]
-"""Overturning spectrum, with both modes: after an impact, and, of stronger pulses, without one."""
+"""Overturning spectrum with both modes: after an impact and, under stronger pulses, without impact."""
 
 
 @cache
@@ -215,8 +213,8 @@ def at_rest() -> Resting:
 
 
 @pytest.mark.parametrize(("cycles", "ratio", "edge"), [*SPECTRUM[1:3], *at_length(SPECTRUM[0], *SPECTRUM[3:])])
-def test_pulses_overturn_a_block_where_housners_falls(cycles: float, ratio: float, edge: float) -> None:
-    """To 2 %, both ways: Housner's equation and ours fall on one side of the edge and stand on the other."""
+def test_pulses_overturn_the_block_at_housners_amplitude(cycles: float, ratio: float, edge: float) -> None:
+    """To 2 % on either side: Housner's equation and the model agree on which amplitudes overturn the block."""
     period = 2 * math.pi / (ratio * BLOCK.p)
     scene = block(BLOCK.b, BLOCK.h, shaken("sine" if cycles == 1 else "half-sine", GRAVITY * BLOCK.b / BLOCK.h, period))
     rest = Resting(scene, "dem-dynamic", at_rest().system, at_rest().state, "stable")
@@ -229,10 +227,10 @@ def test_pulses_overturn_a_block_where_housners_falls(cycles: float, ratio: floa
 
 
 @pytest.mark.parametrize(("friction", "peak"), [(0.3, 1.0), (0.5, 0.8), (0.3, 3.5)])
-def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None:
-    """Under half a sine, to 1e-3: a = μ g from where the ground is faster until the velocities are one.
+def test_sliding_block_slips_as_newmarks(friction: float, peak: float) -> None:
+    """Under half a sine, to 1e-3: a = μ g from when the ground accelerates faster until the velocities are equal.
 
-    The last slides by more than its own length and half of it, off the ground that there was beside it.
+    The last case slides by more than one and a half of its lengths, off the ground that was beside it at first.
     """
     period = 0.4
     rest = resting(block(0.5, 0.1, shaken("half-sine", peak * GRAVITY, period), friction, stiffness=1e11))
@@ -254,19 +252,19 @@ def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None
 
 
 @pytest.mark.parametrize(("peak", "falls"), [(2.0, False), (20.0, True)])
-def test_a_block_that_slides_off_the_ground_is_said_to(peak: float, falls: bool) -> None:
-    """Its fall says how far the ground goes, thirty sizes, and nothing of the block, which would slide on."""
+def test_block_sliding_off_the_ground_is_reported(peak: float, falls: bool) -> None:
+    """Such a fall depends only on the modelled ground, thirty sizes long; on longer ground the block would slide on."""
     response = follow(resting(block(0.5, 0.1, shaken("half-sine", peak * GRAVITY, 0.8), 0.3)), 1.0, rows=50)
     assert response.verdict == ("collapse" if falls else "stands")
     assert (", past the end of the ground;" in response.message) == falls
 
 
 @pytest.mark.parametrize(("slope", "lifts"), [(0.0, 0.4), (0.0, -0.4), (0.14, 0.0), *at_length((0.14, 0.3))])
-def test_a_block_slides_downhill_and_where_the_ground_falls_from_under_it(slope: float, lifts: float) -> None:
-    """Newmark's block with all of its terms, to 1e-3: v' = g sin β − a ∓ μ (g cos β + a_v), four pulses of 0.5 s.
+def test_block_slides_on_a_slope_and_on_vertically_moving_ground(slope: float, lifts: float) -> None:
+    """Newmark's block with all terms, to 1e-3: v' = g sin β − a ∓ μ (g cos β + a_v), four pulses of 0.5 s.
 
-    On level ground it slides farther to the side on which the ground is falling when it is pushed there; on a slope of
-    8° by each pulse downhill alone.
+    On level ground it slides farther to the side to which it is pushed while the ground is falling; on a slope of 8°
+    each pulse moves it only downhill.
     """
     friction, angle = (0.4, slope) if slope else (0.3, 0.0)
     time = np.arange(0.0, 2.001, 0.005)
@@ -289,8 +287,8 @@ def test_a_block_slides_downhill_and_where_the_ground_falls_from_under_it(slope:
 
 
 @pytest.mark.parametrize("period", [0.5, *at_length(5.0)])
-def test_a_force_that_stays_on_slides_a_block_away(period: float) -> None:
-    """At μ g and not later, though just above it takes half a minute: what still gathers energy does not stand."""
+def test_constant_force_slides_a_block_away(period: float) -> None:
+    """At μ g, although it takes half a minute just above: a wall with growing energy does not stand."""
     friction = 0.15
     history = History(*pulse("ramp", 1.0, period), holds=True, interval=period / 200)
     rest = resting(block(0.25, 1.0, history, friction, stiffness=1e9))
@@ -300,8 +298,8 @@ def test_a_force_that_stays_on_slides_a_block_away(period: float) -> None:
 
 
 @pytest.mark.parametrize(("kind", "span"), [("half-sine", 0.5), ("sine", 1.0)])
-def test_a_displaced_ground_starts_and_ends_at_rest(kind: str, span: float) -> None:
-    """A block that slides on ground whose velocity jumps, beside its own equation in small steps."""
+def test_displaced_ground_starts_and_ends_at_rest(kind: str, span: float) -> None:
+    """A block slides on ground with velocity jumps, compared with its own equation in small steps."""
     friction, amplitude = 0.3, 0.1
     history = History(*pulse(kind, amplitude, 1.0), "displacement", interval=1 / 200)
     response = follow(resting(block(0.5, 0.1, history, friction, stiffness=1e11)), 1.0)
@@ -316,8 +314,8 @@ def test_a_displaced_ground_starts_and_ends_at_rest(kind: str, span: float) -> N
 
 
 @pytest.mark.parametrize("scale", [0.9595, *at_length(0.9585)])
-def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(scale: float) -> None:
-    """It hardly moves for as long as it takes to rock; a quiet end of the record changes nothing."""
+def test_block_turning_round_near_balance_does_not_stand(scale: float) -> None:
+    """It barely moves for as long as a rocking cycle; a quiet end of the record makes no difference."""
     time, values = pulse("half-sine", 1.0, 1.0)
     tail = np.arange(time[-1] + 0.01, 10.0, 0.01)
     quiet = History(np.append(time, tail), np.concatenate([values, np.zeros((len(tail), 2))]), interval=1 / 200)
@@ -330,7 +328,7 @@ def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(s
 
 @pytest.mark.parametrize(("peak", "verdict"), [(1.4785, "stands"), (1.47852, "stands"), (1.47858, "collapse")])
 def test_no_block_stands_on_its_corner(peak: float, verdict: str) -> None:
-    """Brought to within a fiftieth of its balance it is calm for a swing, and then comes back, or falls."""
+    """Within 3 % of its balance it is calm for a swing, and then comes back or falls."""
     squat = HousnerBlock(0.25, 0.35)
     balanced = math.sin(squat.alpha) + squat.b / (2 * squat.h) * (1 - math.cos(squat.alpha))
     rest = resting(block(squat.b, squat.h, shaken("half-sine", peak * GRAVITY, 0.6), stiffness=1e9))
@@ -340,8 +338,8 @@ def test_no_block_stands_on_its_corner(peak: float, verdict: str) -> None:
     assert verdict == "collapse" or abs(response.drift[-1]) < 0.05 * balanced
 
 
-def test_a_block_that_rocks_on_by_ever_less_is_followed_to_its_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Slender, and on a bed of springs, it loses a hundredth of its rate in an impact: half a minute is not enough."""
+def test_block_with_decaying_rocking_is_followed_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A slender block on a bed of springs loses 1 % of its angular velocity per impact: half a minute is too short."""
     slender = HousnerBlock(0.1, 0.8)
     motion = shaken("half-sine", 1.4 * GRAVITY * math.tan(slender.alpha), math.pi / slender.p)
     rest = resting(block(slender.b, slender.h, motion, stiffness=1e9).with_joint(compressive_strength=1e9))
@@ -355,7 +353,7 @@ def test_a_block_that_rocks_on_by_ever_less_is_followed_to_its_rest(monkeypatch:
     assert follow(rest, 1.0, rows=50).verdict == "undecided"
 
 
-def test_a_fall_is_one_though_time_is_up_before_it_has_been_filmed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_collapse_counts_if_time_ends_while_it_is_filmed(monkeypatch: pytest.MonkeyPatch) -> None:
     rest = resting(block(BLOCK.b, BLOCK.h, shaken("half-sine", 2.0 * GRAVITY * BLOCK.b / BLOCK.h, math.pi / BLOCK.p)))
     bare = follow(rest, 1.0, rows=50)
     assert bare.verdict == "collapse"
@@ -365,12 +363,12 @@ def test_a_fall_is_one_though_time_is_up_before_it_has_been_filmed(monkeypatch: 
     assert (filmed.verdict, filmed.message) == (bare.verdict, bare.message)
 
 
-def test_what_the_ground_does_depends_neither_on_rows_nor_on_samples_between() -> None:
-    """A record at 50 Hz, and the same straight lines at 1 kHz; however many rows are asked for.
+def test_response_does_not_depend_on_rows_or_resampling() -> None:
+    """A record at 50 Hz and its linear interpolation at 1 kHz, with different numbers of rows.
 
-    To a thousandth of the largest drift after two seconds of impacts, and of those of the free motion that follow. Of
-    other records one of these hangs on the last digits, and the block slips there by a hundredth or not. Rows are at
-    the time steps nearest to their times.
+    To a thousandth of the largest drift after two seconds of impacts and the free motion that follows. Under other
+    records single impacts depend on the last digits, and the block slips by one per cent or not. Rows are at the time
+    steps nearest to their times.
     """
     time, finer = np.arange(0.0, 2.001, 0.02), np.linspace(0.0, 2.0, 2001)
     values = 4.0 * np.random.default_rng(7).standard_normal(len(time))
@@ -387,8 +385,8 @@ def test_what_the_ground_does_depends_neither_on_rows_nor_on_samples_between() -
 
 
 @pytest.mark.long
-def test_joints_that_bear_all_along_rock_as_beds_of_springs_do() -> None:
-    """A strength that is never reached makes nine points of two: an impact then takes less than Housner's, by a lot."""
+def test_joints_with_strength_rock_as_beds_of_springs() -> None:
+    """A strength that is never reached gives nine points for two: an impact loses far less than Housner's."""
     amplitude, period = 1.4 * GRAVITY * math.tan(BLOCK.alpha), math.pi / BLOCK.p
     scene = block(BLOCK.b, BLOCK.h, shaken("half-sine", amplitude, period))
     corners = ((0.0, 2 * BLOCK.h), (2 * BLOCK.b, 2 * BLOCK.h))

@@ -1,4 +1,4 @@
-"""Two blocks on one another: in which of Psycharis's patterns they start, and how fast."""
+"""Two stacked blocks: the pattern of Psycharis in which they start, and their accelerations."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ STARTS = [
 
 
 def built(pair: TwoBlocks, history: History, stiffness: float) -> Scene:
-    """The pair on the ground, which it does not slide on."""
+    """The pair on the ground, with too much friction to slide."""
     (b1, b2), (h1, h2) = pair.b, pair.h
     return build_scene(
         "two blocks",
@@ -47,14 +47,17 @@ def built(pair: TwoBlocks, history: History, stiffness: float) -> Scene:
 
 
 def least_acceleration(pair: TwoBlocks) -> tuple[float, Pattern]:
-    """From which on something turns [m/s²]: the upper block at g b2 / h2, or the pair at g b1 over its centroid."""
+    """Smallest ground acceleration that causes rotation [m/s²], with its pattern.
+
+    The upper block rotates from g b2 / h2, the pair from g b1 over the height of its centroid.
+    """
     centroid = pair.mass @ [pair.h[0], 2 * pair.h[0] + pair.h[1]] / pair.mass.sum()
     alone, as_one = GRAVITY * pair.b[1] / pair.h[1], GRAVITY * pair.b[0] / float(centroid)
     return (alone, UPPER_ALONE) if alone < as_one else (as_one, ONE_BODY)
 
 
-def test_there_is_one_pattern_to_start_in() -> None:
-    """Whatever the pair and the acceleration, mirrored with it; which first, statics says (100 pairs)."""
+def test_initial_pattern_is_unique() -> None:
+    """For 100 random pairs and accelerations, and mirrored; statics determines the first pattern."""
     random = np.random.default_rng(1)
     for upper, lower, h1, h2, ground in random.uniform(0.05, 1.0, (100, 5)):
         pair = TwoBlocks((lower, upper * lower), (h1, h2))
@@ -67,9 +70,9 @@ def test_there_is_one_pattern_to_start_in() -> None:
 
 @pytest.mark.parametrize(("pair", "ground", "pattern"), STARTS)
 def test_two_blocks_start_in_their_pattern(pair: TwoBlocks, ground: float, pattern: Pattern) -> None:
-    """Of a ground accelerated at once: the pattern, θ̈ of both blocks at the start, and over 0.1 s, to 0.3 %.
+    """Under sudden ground acceleration: the pattern, and θ̈ of both blocks initially and over 0.1 s, to 0.3 %.
 
-    By second differences, as joints that give have been pressed a little less where they open, and leave a rate.
+    By second differences, because compliant joints have less compression where they open and cause an initial velocity.
     """
     span, none = 0.1, np.zeros(2)
     assert pair.starts(ground * GRAVITY) == [pattern]
@@ -92,28 +95,28 @@ def test_two_blocks_start_in_their_pattern(pair: TwoBlocks, ground: float, patte
 
 
 def second_difference(of: Array, time: Array, step: int) -> Array:
-    """Mean acceleration over the first two steps of so many rows."""
+    """Mean acceleration over the first two intervals of `step` rows each."""
     first = (of[:, step] - of[:, 0]) / time[step]
     second = (of[:, 2 * step] - of[:, step]) / (time[2 * step] - time[step])
     return np.asarray(2 * (second - first) / time[2 * step])
 
 
 def test_blocks_may_start_in_opposite_senses() -> None:
-    """Under a small block the head of a tall one goes back faster than the ground comes: θ1 > 0 > θ2."""
+    """The head of a tall block below a small one moves back faster than the ground comes: θ1 > 0 > θ2."""
     lower, upper = SLENDER.accelerations(UPPER_LAGS, 2 * GRAVITY, np.zeros(2), np.zeros(2))
     assert lower > 10 > -3 > upper
 
 
 @pytest.mark.parametrize("pair", [SLENDER, FLAT, *at_length(ALIKE)])
-def test_a_ground_accelerated_slowly_starts_the_pattern_of_statics(pair: TwoBlocks) -> None:
-    """An acceleration that grows for 3 s and stays: 3 % below it all stand, 3 % above the pattern's blocks fall."""
+def test_slow_ground_acceleration_starts_the_static_pattern(pair: TwoBlocks) -> None:
+    """The acceleration grows for 3 s and stays: 3 % below the limit all stand, 3 % above the pattern's blocks fall."""
     least, pattern = least_acceleration(pair)
     time, values = pulse("ramp", least, 3.0)
     scene = built(pair, History(time, values, holds=True, interval=0.02), 3e10)
     assert respond("dem-dynamic", scene, 0.97, rows=50).verdict == "stands"
     response = respond("dem-dynamic", scene, 1.03, rows=50)
     assert response.verdict == "collapse"
-    lower, upper = response.shape[:2, 2]  # before it has gone far
+    lower, upper = response.shape[:2, 2]  # before large displacements
     assert upper > 0.03
     if pattern == UPPER_ALONE:
         assert response.first.tolist() == [1]

@@ -1,4 +1,4 @@
-"""Natural vibrations of stacks of blocks beside closed forms."""
+"""Natural vibrations of stacked blocks compared with closed forms."""
 
 import math
 from typing import Any
@@ -22,7 +22,7 @@ THICKNESS, DENSITY = 0.12, 1800.0
 
 
 def stack(n: int, width: float, height: float, normal: float, shear: float, **changes: object) -> Scene:
-    """So many blocks on one another, pressed together by their weight."""
+    """A stack of `n` blocks, compressed by their weight."""
     size = {"wall__length": None, "wall__height": None, "wall__courses": [[1]] * n}
     block = {"wall__block_width": width, "wall__block_height": height}
     scene = scene_from_dict(content(**size, **block, **changes))
@@ -34,8 +34,8 @@ def swaying(found: Vibration) -> list[float]:
     return [f for f, share in zip(found.frequency, found.share, strict=True) if share[0] > 10 * share[1]]
 
 
-def test_a_shear_column_has_the_frequencies_of_its_closed_form() -> None:
-    """N flat blocks on N joints that are soft in shear: ω_j = 2 √(k/m) sin((2 j − 1) π / (2 (2 N + 1)))."""
+def test_shear_column_has_its_closed_form_frequencies() -> None:
+    """N flat blocks on N joints with low shear stiffness: ω_j = 2 √(k/m) sin((2 j − 1) π / (2 (2 N + 1)))."""
     n, width, height, shear = 8, 1.0, 0.05, 1e6
     found = swaying(dem_vibration(stack(n, width, height, 1e10, shear), 24))
     mass, spring = DENSITY * THICKNESS * width * height, shear * THICKNESS * width
@@ -46,19 +46,19 @@ def test_a_shear_column_has_the_frequencies_of_its_closed_form() -> None:
 
 @pytest.mark.parametrize("count", [0, -1, 1.5, "all"])
 @pytest.mark.parametrize("vibrate", [dem_vibration, fem_vibration])
-def test_a_number_of_vibrations_that_is_none_is_refused(vibrate: Any, count: Any) -> None:
+def test_invalid_number_of_vibrations_is_refused(vibrate: Any, count: Any) -> None:
     with pytest.raises(SceneError, match="count = .*: must be a whole number, at least 1"):
         vibrate(stack(2, 0.4, 0.2, 1e9, 1e9, block__young=1e10), count)
 
 
-def test_all_mass_goes_along_with_the_ground() -> None:
+def test_modal_masses_add_up_to_the_whole_mass() -> None:
     found = dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), 9)
     assert found.loose == 0
     assert found.share.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
 
 
-def test_grains_that_hardly_bear_leave_a_stack_its_vibrations() -> None:
-    """90 of 2 µm beside it, pressed by less than `PRESSED`: 270 loose motions, slower than all of the stack's."""
+def test_unloaded_grains_do_not_change_the_vibrations_of_a_stack() -> None:
+    """90 grains of 2 µm with pressure below `PRESSED`: 270 loose motions, all slower than those of the stack."""
     tower = [(0.0, float(k), 0.5, 1.0) for k in range(4)]
     grains = [(1.0 + 0.001 * k, 0.0, 2e-6, 2e-6) for k in range(90)]
     joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 4e8))
@@ -91,8 +91,8 @@ def timoshenko(length: float, depth: float, stiff: tuple[float, float], number: 
 
 
 @pytest.mark.parametrize("number", [0, 1])
-def test_a_monolithic_cantilever_of_blocks_is_timoshenkos(number: int) -> None:
-    """Blocks that do not deform on joints that do: a joint's two points turn as EI = k_n t b³ / 4 · a."""
+def test_stack_of_rigid_blocks_vibrates_as_a_timoshenko_cantilever(number: int) -> None:
+    """Rigid blocks on compliant joints: the two points of a joint have EI = k_n t b³ / 4 · a."""
     n, width, height, k = 64, 0.4, 0.03125, 1e10
     found = swaying(dem_vibration(stack(n, width, height, k, 0.4 * k), 8))
     bending, shear = k * THICKNESS * width**3 / 4 * height, 0.4 * k * THICKNESS * width * height
@@ -100,8 +100,8 @@ def test_a_monolithic_cantilever_of_blocks_is_timoshenkos(number: int) -> None:
 
 
 @pytest.mark.long
-def test_blocks_that_deform_on_joints_that_do_not_are_timoshenkos_too() -> None:
-    """E b³ t / 12 and κ = 5/6, in plane stress; cells of triangles lock a little."""
+def test_deformable_blocks_on_stiff_joints_vibrate_as_a_timoshenko_cantilever() -> None:
+    """E b³ t / 12 and κ = 5/6, in plane stress; triangular cells lock slightly."""
     n, width, height, young = 10, 0.4, 0.2, 1e9
     scene = stack(n, width, height, 1e12, 1e12, block__young=young, block__poisson=0.0)
     found = swaying(fem_vibration(scene, 4, cells=3, modes="all"))
@@ -110,8 +110,8 @@ def test_blocks_that_deform_on_joints_that_do_not_are_timoshenkos_too() -> None:
 
 
 @pytest.mark.parametrize("growth", [1e5, 1e7])
-def test_a_joint_that_has_closed_is_as_stiff_as_its_pressure_makes_it(growth: float) -> None:
-    """A block on a joint with k = k_n + g p up to k_∞ bounces at √(k A / m), p = m g / A its weight's pressure."""
+def test_closing_joint_has_the_stiffness_at_its_pressure(growth: float) -> None:
+    """A block with k = k_n + g p up to k_∞ bounces at √(k A / m); p = m g / A is the pressure by its weight."""
     width, height, first, last = 0.4, 0.2, 1e8, 5e9
     scene = stack(1, width, height, first, first)
     scene = scene.with_joint(closure=Closure(growth, last))
@@ -124,8 +124,8 @@ def test_a_joint_that_has_closed_is_as_stiff_as_its_pressure_makes_it(growth: fl
 
 
 @pytest.mark.parametrize("others", [0, 1])
-def test_a_taut_tie_is_a_spring_and_a_slack_one_is_none(others: int) -> None:
-    """A rod holds a block sideways; one beside it, which the pull of the first one slackens, does not."""
+def test_taut_tie_is_a_spring_and_slack_tie_is_not(others: int) -> None:
+    """A rod holds a block sideways; a second rod without preload is slackened by the first and adds nothing."""
     width, height, shear, rod = 0.4, 0.2, 1e6, 4e4
     tie = {"from": [width, height / 2], "to": [width + 1.0, height / 2], "area": 1e-4, "young": rod / 1e-4}
     ties = [tie | {"yield": 1e5, "preload": preload} for preload in (10.0, *[0.0] * others)]
@@ -135,8 +135,8 @@ def test_a_taut_tie_is_a_spring_and_a_slack_one_is_none(others: int) -> None:
 
 
 @pytest.mark.parametrize(("way", "rod"), [(2.0e-4, 4e4), (3.0e-4, 0.0)])
-def test_a_tie_that_yields_is_no_spring(way: float, rod: float) -> None:
-    """A rod of 4e4 N/m that bears 10 N, drawn by a block that has been moved by 8 N and by 12 N of it."""
+def test_yielding_tie_is_no_spring(way: float, rod: float) -> None:
+    """A rod of 4e4 N/m with a yield force of 10 N, stretched elastically to 8 N and beyond yield (12 N)."""
     width, height, shear = 0.4, 0.2, 1e6
     tie = {"from": [width, height / 2], "to": [width + 1.0, height / 2], "area": 1e-4, "young": 4e8, "yield": 10.0}
     run = Run(rigid_system(stack(1, width, height, 1e11, shear, tie=[tie])))
@@ -147,7 +147,7 @@ def test_a_tie_that_yields_is_no_spring(way: float, rod: float) -> None:
     assert found == pytest.approx(math.sqrt(spring / mass) / (2 * math.pi), rel=1e-3)
 
 
-def test_walls_that_fall_or_are_not_pressed_together_do_not_vibrate() -> None:
+def test_walls_that_fall_or_are_not_compressed_do_not_vibrate() -> None:
     with pytest.raises(SceneError, match="does not come to rest under its dead load"):
         dem_vibration(stack(2, 0.1, 0.2, 1e9, 4e8, load__gravity=[9.0, -3.0]), 3)
     hung = {"from": [0.2, 0.2], "to": [0.2, 1.2], "area": 1e-4, "young": 2e11, "yield": 1e4, "preload": 400.0}
@@ -155,8 +155,8 @@ def test_walls_that_fall_or_are_not_pressed_together_do_not_vibrate() -> None:
         dem_vibration(stack(1, 0.4, 0.2, 1e9, 4e8, tie=[hung]), 3)
 
 
-def test_a_beam_vibrates_with_its_own_mass() -> None:
-    """As a course does that is as heavy: it had the mass of masonry of its size, whatever it weighs."""
+def test_beam_vibrates_with_its_own_mass() -> None:
+    """Like a course of equal mass; the beam once had the mass of masonry of its size instead."""
     beam = {"height": 0.05, "mass": 2.0}
     under = dem_vibration(stack(2, 0.4, 0.2, 1e9, 4e8, beam=beam), 9)
     heights = {"wall__block_height": None, "wall__course_heights": [0.2, 0.2, 0.05]}
@@ -181,7 +181,7 @@ STIFF = Stiffness(1e9, 4e8)
 
 
 def frequencies(scene: Scene, count: int, springs: Array) -> Array:
-    """Natural frequencies [Hz] of rigid blocks on normal and shear springs `(np, 2)` [Pa/m] at their joints' points."""
+    """Natural frequencies [Hz] of rigid blocks on normal and shear springs ``(np, 2)`` [Pa/m] at joint points."""
     points, blocks, mass = contact_points(scene), scene.blocks, scene.density * scene.thickness
     stiffness = np.zeros((3 * len(blocks), 3 * len(blocks)))
     for k, (block, at, area) in enumerate(zip(points.block, points.position, points.area, strict=True)):
@@ -200,28 +200,28 @@ def frequencies(scene: Scene, count: int, springs: Array) -> Array:
 
 
 @pytest.mark.parametrize("density", [1800.0, 1800.001, 1801.0])
-def test_joints_that_touch_without_bearing_are_no_springs(density: float) -> None:
-    """Head joints of a dry wall carry nothing but rounding: its frequencies are those of blocks on beds alone."""
+def test_unloaded_joints_are_no_springs(density: float) -> None:
+    """Head joints of a dry wall carry only rounding errors: the frequencies are those of blocks on bed joints alone."""
     scene = scene_from_dict(content(block__density=density)).with_joint(elasticity=STIFF)
     beds = np.abs(contact_points(scene).normal[:, 1]) > 0.5
     own = frequencies(scene, 6, beds[:, None] * np.array([1e9, 4e8]))
     assert dem_vibration(scene, 6).frequency == pytest.approx(own, rel=1e-6)
 
 
-def test_a_beam_of_fixed_height_only_goes_sideways() -> None:
-    """It has one freedom, and what is below vibrates beneath a ceiling."""
+def test_beam_of_fixed_height_only_moves_sideways() -> None:
+    """It has one degree of freedom, and the blocks below vibrate beneath a ceiling."""
     beam = {"height": 0.1, "mass": 3.0, "condition": "fixed-height", "force": [0, -1e3]}
     found = dem_vibration(stack(2, 0.4, 0.2, 1e9, 4e8, beam=beam), 9)
     assert len(found.frequency) == 7
     assert found.shape[:, -1, 1:] == pytest.approx(0.0, abs=1e-12)
-    # Upright, two masses on three springs between the ground and the ceiling.
+    # Vertically, two masses on three springs between the ground and the ceiling.
     springs, mass = 1e9 * 0.4 * THICKNESS, DENSITY * 0.4 * 0.2 * THICKNESS
     upright = [f for f, share in zip(found.frequency, found.share, strict=True) if share[1] > 10 * share[0]]
     assert upright[0] == pytest.approx(math.sqrt(springs / mass) / (2 * math.pi), rel=1e-6)
 
 
-def test_a_joint_that_has_softened_is_as_stiff_as_its_secant() -> None:
-    """A block that leans on mortar torn by part: each point that stands open with its traction over its opening."""
+def test_softened_joint_has_its_secant_stiffness() -> None:
+    """A block leans on partly cracked mortar: each open point has the stiffness traction over opening."""
     glue = {"cohesion": 6e4, "tensile_strength": 3e4, "fracture_energy_1": 30.0, "fracture_energy_2": 300.0}
     push = {"kind": "point", "at": [0.0, 1.2], "force": [200.0, 0.0]}
     scene = stack(1, 0.4, 1.2, 1e9, 4e8, joint={"friction": 0.6, **glue}, load__dead=[push])
@@ -236,8 +236,8 @@ def test_a_joint_that_has_softened_is_as_stiff_as_its_secant() -> None:
     assert found[0] < 0.95 * frequencies(scene, 3, np.tile([1e9, 4e8], (len(secant), 1)))[0]
 
 
-def test_a_joint_that_is_torn_where_it_stands_open_holds_nothing_there() -> None:
-    """A block that is pushed until nearly nothing but its toe bears: neither along nor across the joint."""
+def test_fully_cracked_open_joint_has_no_stiffness() -> None:
+    """A block is pushed until little more than its toe is compressed; cracked open points have no stiffness."""
     glue = {"cohesion": 600.0, "tensile_strength": 300.0, "fracture_energy_1": 1e-4, "fracture_energy_2": 1e-3}
     push = {"kind": "point", "at": [0.0, 1.2], "force": [155.0, 0.0]}
     scene = stack(1, 0.4, 1.2, 1e9, 4e8, joint={"friction": 0.6, **glue}, load__dead=[push])
@@ -251,8 +251,8 @@ def test_a_joint_that_is_torn_where_it_stands_open_holds_nothing_there() -> None
     assert dem_vibration(scene, 3).frequency == pytest.approx(own, rel=1e-6)
 
 
-def test_equal_stacks_have_every_vibration_of_one_as_often_as_there_are_stacks() -> None:
-    """Thirty of four blocks, 360 motions: Lanczos' method sees one of equal vibrations, and has no more directions."""
+def test_equal_stacks_have_multiple_frequencies() -> None:
+    """Thirty stacks of four blocks, 360 motions: a Lanczos method finds one of equal modes and stops early."""
     joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 4e8))
     stack = [(0.0, float(k), 0.5, 1.0) for k in range(4)]
     stacks = [(x + 2.0 * number, *box) for number in range(30) for x, *box in stack]

@@ -1,4 +1,4 @@
-"""Walls whose ground moves: balances, the static limit, and windows in which a wall stands again."""
+"""Walls on moving ground: balances, the static limit, and windows in which a wall stands again."""
 
 import math
 from dataclasses import replace
@@ -34,27 +34,27 @@ def wall(history: History | None, **changes: Any) -> Scene:
     return scene if history is None else replace(scene, load=Load(live=(history,)))
 
 
-def test_momentum_and_energy_are_balanced_at_every_sample() -> None:
-    """Momentum that the ground gives the wall comes to nothing in the end, but for what bears its weight."""
+def test_momentum_and_energy_balance() -> None:
+    """The ground gives the wall no net momentum in the end, apart from the reaction to its weight."""
     rest = resting(wall(shaken("sine", 12.0, 0.2)))
     response = follow(rest, 1.0)
     assert response.verdict == "stands"
     assert response.unaccounted < 0.01
     assert response.energy[:, 4:].min() > -1e-6
     mass = float(rest.scene.mass[~rest.scene.fixed].sum())
-    # Over the whole motion the wall is given no momentum but the ground's, and bears its weight.
+    # Over the whole motion the horizontal impulse vanishes and the vertical one is that of the weight.
     step = np.diff(response.time, prepend=0.0)
     assert (response.reaction[:, 0] * step).sum() == pytest.approx(0.0, abs=1e-3 * mass)
     assert (response.reaction[:, 1] * step).sum() == pytest.approx(mass * GRAVITY * response.time[-1], rel=1e-3)
 
 
 @pytest.mark.parametrize(("kind", "amplitude", "period"), [("ricker", 1.0, 0.06), ("sine", 1.0, 0.02)])
-def test_a_wall_that_comes_to_rest_has_spent_what_its_ground_gave_it(
+def test_wall_at_rest_has_dissipated_the_energy_supplied(
     kind: str, amplitude: float, period: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A load that changes does half of a step's work with either value; velocities are half a step behind motions.
+    """A varying load does half of a step's work with either value; velocities lag motions by half a step.
 
-    To leave out either misses 2 % of the work, in the end or on the way; what impacts of closed joints lose is less.
+    Leaving out either misses 2 % of the work, in the end or on the way; impacts of closed joints lose less.
     """
     monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", math.inf)
     response = follow(resting(wall(shaken(kind, amplitude, period))), 1.0)
@@ -64,8 +64,8 @@ def test_a_wall_that_comes_to_rest_has_spent_what_its_ground_gave_it(
 
 
 @pytest.mark.parametrize("sense", [-1.0, *at_length(1.0)])
-def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: float) -> None:
-    """An acceleration that grows for 4 s and stays on brings a wall down 3 % above the static load, not 3 % below."""
+def test_slow_ground_acceleration_gives_the_static_limit_load(sense: float) -> None:
+    """An acceleration that grows for 4 s and stays causes collapse 3 % above the static load, not 3 % below."""
     static = run_model(
         "dem-dynamic", replace(wall(None, joint__friction=0.9), load=Load(live=(Lateral((-sense, 0.0)),)))
     )
@@ -79,8 +79,11 @@ def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: 
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
-def test_a_tie_and_a_floor_hold_a_block_whose_ground_moves_slowly(model: str) -> None:
-    """λ W h = (W + P) b + 2 h T_y: W is pushed, P is borne by the half nearer to the toe, T_y draws back at the top."""
+def test_tie_and_floor_hold_a_block_under_slow_ground_acceleration(model: str) -> None:
+    """λ W h = (W + P) b + 2 h T_y: only W is accelerated; T_y pulls back at the top.
+
+    The resultant of the floor load P has the same lever b as W.
+    """
     b, h, history = 0.25, 1.0, History(*pulse("ramp", -GRAVITY, 2.0), holds=True, interval=0.02)
     bare = block(b, h, history)
     weight = GRAVITY * float(bare.mass[0])
@@ -96,8 +99,8 @@ def test_a_tie_and_a_floor_hold_a_block_whose_ground_moves_slowly(model: str) ->
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["wall-w1", "wall-w2", "wall-w3"])
-def test_published_walls_fall_at_their_static_load_as_the_ground_moves_slowly(name: str) -> None:
-    """W1 to W3 under an acceleration that grows for 4 s and stays: 3 % below the static bracket's middle and above."""
+def test_published_walls_fall_at_their_static_load_under_slow_ground_acceleration(name: str) -> None:
+    """W1 to W3 under an acceleration that grows for 4 s and stays: 3 % below and above the static bracket's middle."""
     scene = published_scene(name)
     static = run_model("dem-dynamic", scene)
     assert static.multiplier is not None
@@ -108,14 +111,14 @@ def test_published_walls_fall_at_their_static_load_as_the_ground_moves_slowly(na
     assert follow(rest, 1.03 * static.multiplier, rows=50).verdict == "collapse"
 
 
-def test_a_mirrored_motion_has_a_mirrored_response() -> None:
+def test_mirrored_motion_gives_the_mirrored_response() -> None:
     to, fro = (follow(resting(wall(shaken("sine", sense * 8.0, 0.3))), 1.0, rows=50) for sense in (1.0, -1.0))
     assert to.verdict == fro.verdict == "stands"
     assert to.peak_drift == pytest.approx(fro.peak_drift, rel=0.02)
 
 
-def test_windows_are_told_of() -> None:
-    """A block under a sine falls after an impact, stands under a stronger one, and falls without impact under more."""
+def test_windows_of_standing_again_are_found() -> None:
+    """A block under a sine falls after an impact, stands under a stronger one, and falls without impact beyond that."""
     housner = HousnerBlock()
     scale = GRAVITY * housner.b / housner.h
     rest = resting(block(housner.b, housner.h, shaken("sine", scale, 2 * math.pi / (4 * housner.p))))
@@ -124,8 +127,8 @@ def test_windows_are_told_of() -> None:
     assert search.windows() == [(5.15, 5.15)]
 
 
-def test_scales_at_which_a_wall_neither_rests_nor_falls_lie_between_the_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told to stand below λ = 1 and to fall from 2 on: the bracket is from the last below 1, and no answer."""
+def test_undecided_scales_lie_between_the_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stands below λ = 1 and falls from 2: the bracket starts at the last scale below 1 and has no multiplier."""
     scene = block(0.25, 1.0, shaken("half-sine", 3.0, 0.5))
     known = follow(resting(scene), 0.01)
 
@@ -145,7 +148,7 @@ def test_scales_at_which_a_wall_neither_rests_nor_falls_lie_between_the_bounds(m
 
 @pytest.mark.parametrize("falls", [1e-3, 0.03, 0.4, 1.0, 3.0, 20.0])
 def test_no_scale_is_tried_twice(falls: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nor one that differs in its last digit: each is a motion that is followed through."""
+    """Nor one that differs only by rounding, because each costs a full simulation."""
     scene = block(0.25, 1.0, shaken("half-sine", 3.0, 0.5))
     known = follow(resting(scene), 0.01)
 
@@ -161,7 +164,7 @@ def test_no_scale_is_tried_twice(falls: float, monkeypatch: pytest.MonkeyPatch) 
     assert np.diff(tried).min() > 1e-3 * falls
 
 
-def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
+def test_critical_scale_of_half_a_sine_is_housners() -> None:
     housner = HousnerBlock()
     unit = GRAVITY * housner.b / housner.h
     scene = block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (2 * housner.p)), stiffness=1e9)
@@ -175,10 +178,10 @@ def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
 
 
 @pytest.mark.long
-def test_deformable_blocks_follow_the_ground_as_rigid_ones() -> None:
-    """Blocks whose deformations are left out, in stiff joints; theirs have contacts at middles of sides besides.
+def test_stiff_deformable_blocks_respond_like_rigid_ones() -> None:
+    """In stiff joints; deformable blocks also have contacts at the middles of their sides.
 
-    One block a course: drifts of two scatter by 5 % over time steps.
+    One block per course: with two blocks the drifts scatter by 5 % with the time step.
     """
     scene = wall(shaken("half-sine", 8.0, 0.3), wall__length=0.24, block__young=1e10, block__poisson=0.2)
     scene = scene.with_joint(elasticity=Stiffness(1e11, 1e11))
@@ -188,7 +191,7 @@ def test_deformable_blocks_follow_the_ground_as_rigid_ones() -> None:
     assert deformable.unaccounted < 0.01
 
 
-def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
+def test_wall_that_falls_under_dead_load_is_not_shaken() -> None:
     scene = wall(shaken("sine", 8.0, 0.3), load__gravity=9.81)
     pushed = replace(scene, load=replace(scene.load, gravity=(9.0, -3.0)))
     response = respond("dem-dynamic", pushed)
@@ -198,8 +201,8 @@ def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
     assert critical_scale(pushed, "dem-dynamic", finite_system(with_impacts(pushed)), 0.1).status == "infeasible"
 
 
-def test_a_record_shorter_than_a_hundred_steps_is_followed_to_its_end() -> None:
-    """Rows were a two-hundredth of it apart, less than half a step, and none was ever taken."""
+def test_very_short_record_is_followed_to_its_end() -> None:
+    """Rows 1/200 of the record apart were once less than half a step apart, and none was ever taken."""
     rows = 0
 
     def count(*_: object) -> None:
@@ -214,18 +217,18 @@ def test_a_record_shorter_than_a_hundred_steps_is_followed_to_its_end() -> None:
     assert np.diff(response.time).min() > 0
 
 
-def test_a_wall_whose_energy_is_made_by_too_long_a_step_is_not_followed_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At thrice the stable step, a quarter of what it begins with, it flies apart, which is no collapse."""
+def test_run_ends_undecided_if_a_too_long_step_creates_energy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even a quarter of the initial step, thrice the stable one, makes it fly apart, which is no collapse."""
     monkeypatch.setattr(import_module("runningbond.response.follow"), "PART", 12.0)
     response = follow(resting(wall(shaken("sine", 12.0, 0.2))), 1.0)
     assert response.verdict == "undecided"
     assert response.time[-1] < 0.05
     assert "more energy is missing than was supplied" in response.message
-    assert "unaccounted for: beyond 1% this is not to be relied on" in response.message
+    assert "unaccounted for: beyond 1% the result is not reliable" in response.message
 
 
 @pytest.mark.parametrize("scale", [0.0, 1e-9])
-def test_a_motion_that_is_next_to_none_supplies_no_energy_to_miss_a_share_of(scale: float) -> None:
+def test_negligible_motion_has_no_relative_energy_error(scale: float) -> None:
     response = follow(resting(wall(shaken("sine", 1.0, 0.2))), scale)
     assert response.verdict == "stands"
     assert response.unaccounted < 1e-4
@@ -233,10 +236,10 @@ def test_a_motion_that_is_next_to_none_supplies_no_energy_to_miss_a_share_of(sca
 
 
 @pytest.mark.long
-def test_a_verdict_whose_ledger_does_not_close_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A corner that bounces, for hardly any viscosity, loses more than is counted at each of its blows.
+def test_verdict_reports_an_open_energy_balance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A corner that bounces with little viscosity causes an energy error at each of its impacts.
 
-    At a quarter of the step that is taken a few thousandths, of which no more than one is allowed here.
+    Even at a quarter of the time step it misses a few thousandths; here only one is allowed.
     """
     allowed = 1e-3
     monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", allowed)
@@ -248,8 +251,8 @@ def test_a_verdict_whose_ledger_does_not_close_says_so(monkeypatch: pytest.Monke
     assert f"{response.unaccounted:.1%} of the energy supplied is unaccounted for" in response.message
 
 
-def test_half_the_step_is_taken_where_the_ledger_does_not_close(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The steps of both count; half the step misses less."""
+def test_step_is_halved_if_the_energy_balance_does_not_close(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The steps of both runs count; the second one has the smaller energy error."""
     housner, follow_room = HousnerBlock(), import_module("runningbond.response.follow")
     unit = GRAVITY * housner.b / housner.h
     rest = resting(block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (4 * housner.p)), stiffness=1e8))
@@ -263,14 +266,14 @@ def test_half_the_step_is_taken_where_the_ledger_does_not_close(monkeypatch: pyt
 @pytest.mark.parametrize(
     "points", [[], "ab", [[0.1, float("nan")]], [[0.0, 0.0]], [0.0, 1.0], [[0.1, 1500.0]], [[-1.5, 0.4]]]
 )
-def test_points_that_drift_is_no_share_of_are_refused(points: Any) -> None:
+def test_points_without_a_drift_are_refused(points: Any) -> None:
     scene = wall(shaken("half-sine", 8.0, 0.3))
     with pytest.raises(SceneError, match="points"):
         respond("dem-dynamic", scene, points=points)
 
 
 def under_a_beam(mass: float, period: float = 1.0, **more: Any) -> rb.Wall:
-    """A cube of 2 t with a beam of a mass [kg] on it, over ground that moves at 0.3 g for half a period [s]."""
+    """A cube of 2 t under a beam of a given mass [kg], on ground with 0.3 g for half a period [s]."""
     return rb.Wall.running_bond(
         length=1.0,
         height=1.0,
@@ -289,10 +292,10 @@ def under_a_beam(mass: float, period: float = 1.0, **more: Any) -> rb.Wall:
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", *at_length("fem")])
-def test_a_light_beam_has_no_more_inertia_than_it_weighs(model: str) -> None:
-    """It stays where friction bears its own inertia, 0.6 > 0.3, whatever it weighs: it was as stone, and slid off.
+def test_beam_has_the_inertia_of_its_own_mass(model: str) -> None:
+    """Friction 0.6 > 0.3 holds it whatever its mass; with the inertia of stone it once slid off.
 
-    One of no mass that had inertia alone was left behind in space.
+    A beam with inertia but no weight was once left behind in space.
     """
     light, massless = (under_a_beam(mass).respond(model) for mass in (4.0, 0.0))
     for response in (light, massless):
@@ -303,7 +306,7 @@ def test_a_light_beam_has_no_more_inertia_than_it_weighs(model: str) -> None:
 
 
 @pytest.mark.parametrize("mass", [50.0, *at_length(0.0)])
-def test_ground_that_moves_slowly_bears_the_inertia_of_the_mass_there_is(mass: float) -> None:
+def test_base_shear_under_slow_ground_motion_is_mass_times_acceleration(mass: float) -> None:
     response = under_a_beam(mass, 4.0, force=[0.0, -5e3]).respond("dem-dynamic")
     middle = int(np.searchsorted(response.time, 1.0))
     borne = response.reaction[middle, 0] / response.ground[middle, 0]
@@ -311,8 +314,8 @@ def test_ground_that_moves_slowly_bears_the_inertia_of_the_mass_there_is(mass: f
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", *at_length("fem")])
-def test_blocks_on_the_stiffest_joints_come_to_rest_however_far_the_ground_reaches(model: str) -> None:
-    """Slips are rounded as the ground's corners are far away: at ten thousand of its sizes none rested."""
+def test_blocks_on_very_stiff_joints_come_to_rest_on_wide_ground(model: str) -> None:
+    """Slips suffer rounding that grows with the ground's extent: at ten thousand block sizes none came to rest."""
     scene = block(0.5, 0.1, shaken("half-sine", 2.0, 0.1), 0.3, stiffness=1e13)
     scene = replace(scene, block_materials=(replace(scene.block, young=1e10, poisson=0.2),))
     response = respond(model, scene)
@@ -320,8 +323,8 @@ def test_blocks_on_the_stiffest_joints_come_to_rest_however_far_the_ground_reach
     assert response.unaccounted < 1e-3
 
 
-def test_points_are_followed_on_the_blocks_that_hold_them() -> None:
-    """Centroids go where their blocks do, of walls in bond, where corners of others are nearer."""
+def test_points_move_with_the_blocks_that_contain_them() -> None:
+    """Centroids move with their blocks in a bonded wall, even where corners of other blocks are nearer."""
     scene = wall(History(*pulse("sine", 0.9 * GRAVITY, 0.6), interval=0.003), joint__friction=0.3)
     own = np.flatnonzero(scene.wall)
     response = respond("dem-dynamic", scene, points=scene.blocks.centroid[own], rows=100)

@@ -1,4 +1,4 @@
-"""Blocks and walls whose ground moves."""
+"""Blocks and walls on moving ground."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from tests.limit.test_limit import rectangle
 
 
 def shaken(kind: str, amplitude: float, period: float) -> History:
-    """A pulse of the ground [m/s²]."""
+    """A pulse of ground acceleration [m/s²]."""
     return History(*pulse(kind, amplitude, period), interval=period / 200)
 
 
@@ -32,5 +32,5 @@ def resting(scene: Scene) -> Resting:
 
 
 def still() -> History:
-    """A ground that moves by next to nothing."""
+    """Ground with negligible motion."""
     return History(np.array([0.0, 0.01]), np.array([[0.0, 0.0], [1e-9, 0.0]]))

@@ -1,4 +1,4 @@
-"""A result knows its scene, and its files for ParaView hold what was put into them."""
+"""Stored scenes, files for ParaView, joint states, and the recording of runs."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
@@ -31,8 +31,8 @@ from tests.walls import courses, panel
 
 
 @pytest.fixture(autouse=True)
-def no_error_of_vtk() -> Iterator[None]:
-    """What VTK reports as an error fails the test."""
+def vtk_errors_fail_test() -> Iterator[None]:
+    """Fail the test on errors reported by VTK."""
     with vtk_errors_raised():
         yield
 
@@ -52,7 +52,7 @@ BRITTLE = {"friction": 0.6, "cohesion": 3e5, "tensile_strength": 1e5, "normal_st
         {"block__young": 1e10, "inner_joint": BRITTLE, "joint__normal_stiffness": 1e9, "joint__shear_stiffness": 4e8},
     ],
 )
-def test_a_scene_comes_back_from_a_result_as_it_went(tmp_path: Path, changes: dict[str, Any]) -> None:
+def test_scene_is_stored_with_result(tmp_path: Path, changes: dict[str, Any]) -> None:
     scene = panel(**changes)
     save_outcome(Outcome(scene.title, "limit", "undecided"), tmp_path, "key", scene)
     back = load_scene(tmp_path)
@@ -60,14 +60,14 @@ def test_a_scene_comes_back_from_a_result_as_it_went(tmp_path: Path, changes: di
     assert np.array_equal(back.control_point[1], scene.control_point[1])
 
 
-def test_a_result_without_a_scene_says_so(tmp_path: Path) -> None:
+def test_result_without_scene_is_reported(tmp_path: Path) -> None:
     save_outcome(Outcome("wall", "limit", "undecided"), tmp_path)
     with pytest.raises(StoreError, match="without its scene"):
         load_scene(tmp_path)
 
 
 def moved(scene: Scene, seed: int = 0) -> Frame:
-    """A frame with random numbers everywhere, its jumps those of its rigid motion."""
+    """A frame of random numbers; its jumps are those of its rigid motion."""
     random = np.random.default_rng(seed)
     points = wall_points(scene)
     motion = np.where(scene.fixed[:, None], 0.0, random.normal(size=(len(scene.blocks), 3)))
@@ -91,8 +91,8 @@ def points_of(grid: Any) -> Any:
     return convert(grid.GetPoints().GetData())
 
 
-def test_blocks_come_back_from_paraview_files(tmp_path: Path) -> None:
-    """Corners, their displacement and velocity by the motion of a rigid body, and the numbers of the blocks."""
+def test_block_files_contain_motion_and_numbers(tmp_path: Path) -> None:
+    """Corners, their displacement and velocity by rigid-body motion, and block numbers."""
     scene = panel()
     frame = moved(scene)
     TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path).add(frame)
@@ -118,7 +118,7 @@ def test_blocks_come_back_from_paraview_files(tmp_path: Path) -> None:
 
 
 def test_courses_and_templates_are_counted() -> None:
-    """Twelve courses from below; full blocks, left and right half blocks alike, and the ground."""
+    """Twelve courses from the bottom; full blocks, equal left and right half blocks, and the ground."""
     from runningbond.pictures.vtk_grids import GridBuilder
 
     scene = panel()
@@ -133,8 +133,8 @@ def test_courses_and_templates_are_counted() -> None:
     assert all(np.ptp(area) < 1e-12 for area in areas)
 
 
-def test_joints_come_back_from_paraview_files(tmp_path: Path) -> None:
-    """Each piece lies on its joint; its two faces move with their blocks, and so come apart by opening and slip."""
+def test_joint_files_contain_jumps_and_tractions(tmp_path: Path) -> None:
+    """Each cell lies on its joint; its two faces move with their blocks, and separate by opening and slip."""
     scene = panel()
     frame, points = moved(scene), wall_points(scene)
     TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path).add(frame)
@@ -174,8 +174,8 @@ def test_joints_come_back_from_paraview_files(tmp_path: Path) -> None:
             assert np.array_equal(of_points[name][quads[:, k]], values[own[:, k]])
 
 
-def test_a_joint_is_shown_as_what_it_does_most_tellingly() -> None:
-    """Open before crushed, crushed before sliding, sliding before a spent bond, that before sticking."""
+def test_joint_shows_state_of_highest_priority() -> None:
+    """Open before crushed, then sliding, debonded and sticking."""
     from runningbond.pictures.vtk_grids import GridBuilder
 
     scene = courses([[1], [1]])
@@ -189,8 +189,8 @@ def test_a_joint_is_shown_as_what_it_does_most_tellingly() -> None:
             assert (found == max(one, other, key=order.index)).all()
 
 
-def test_another_reader_finds_the_same(tmp_path: Path) -> None:
-    """meshio, which shares nothing with VTK, reads points, cells and data."""
+def test_meshio_reads_same_data(tmp_path: Path) -> None:
+    """meshio shares no code with VTK, and reads the same points, cells and data."""
     scene = panel()
     frame = moved(scene)
     TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path).add(frame)
@@ -203,10 +203,8 @@ def test_another_reader_finds_the_same(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("last", [8, 9, 10, 11])
-def test_a_series_is_whole_whenever_it_is_broken_off(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, last: int
-) -> None:
-    """Each moment is two VTU files and then two PVD files; the third moment is broken off at each of them."""
+def test_interrupted_series_stays_readable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, last: int) -> None:
+    """Each frame is two VTU files and then two PVD files; the third frame is interrupted at each of them."""
     scene = panel()
     series = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path)
     written: list[str] = []
@@ -229,8 +227,8 @@ def test_a_series_is_whole_whenever_it_is_broken_off(
             assert read_grid(path).GetNumberOfCells() > 0
 
 
-def test_a_reader_of_time_series_finds_all_frame_files(tmp_path: Path) -> None:
-    """PyVista reads the PVD file as ParaView does, and steps through its times."""
+def test_pyvista_reads_all_frames_of_series(tmp_path: Path) -> None:
+    """PyVista reads the PVD file like ParaView, and steps through its times."""
     scene = panel()
     series = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path)
     frames = [moved(scene, seed) for seed in range(3)]
@@ -245,7 +243,7 @@ def test_a_reader_of_time_series_finds_all_frame_files(tmp_path: Path) -> None:
         assert np.array_equal(read.ravel(), frame.slip)
 
 
-def test_a_series_stays_short_and_keeps_its_ends(tmp_path: Path) -> None:
+def test_long_series_is_thinned_but_keeps_its_ends(tmp_path: Path) -> None:
     scene = courses([[1]])
     series = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path)
     frame = moved(scene)
@@ -262,8 +260,8 @@ def test_a_series_stays_short_and_keeps_its_ends(tmp_path: Path) -> None:
     assert times == sorted(set(times))
 
 
-def test_a_long_series_keeps_the_way_up_and_the_largest_load(tmp_path: Path) -> None:
-    """Fifteen states up to the peak, a hundred past it: as many of a hundred as of fifteen, by their numbers."""
+def test_thinned_series_keeps_ascent_and_largest_load(tmp_path: Path) -> None:
+    """Fifteen states up to the peak and a hundred beyond it: frames are thinned evenly by number."""
     scene = courses([[1]])
     series, frame = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path), moved(scene)
     curve = [*np.linspace(0, 1, 16), *np.linspace(0.99, 0.5, 100)]
@@ -274,7 +272,7 @@ def test_a_long_series_keeps_the_way_up_and_the_largest_load(tmp_path: Path) -> 
     assert loads.index(1.0) >= 4
 
 
-def test_names_and_kinds_do_not_change_over_time(tmp_path: Path) -> None:
+def test_arrays_are_same_in_all_frames(tmp_path: Path) -> None:
     scene = panel(**STIFF)
     outcome = limit(scene)
     record_mechanism(scene, outcome, tmp_path)
@@ -287,18 +285,18 @@ def test_names_and_kinds_do_not_change_over_time(tmp_path: Path) -> None:
         assert len(layouts) == 1
 
 
-def test_what_vtk_complains_of_is_raised(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_vtk_errors_are_raised(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "torn.vtu").write_text("<VTKFile")
     with pytest.raises(VtkError, match="parsing XML"):
         read_grid(tmp_path / "torn.vtu")
     assert capfd.readouterr().err == ""
 
 
-# What joints do
+# Joint states
 
 
-def test_a_block_that_topples_opens_its_base_up_to_the_edge_it_turns_about() -> None:
-    """A block twice as high as wide topples at λ = 1/2 with friction 0.6: one end of its base opens, the other not."""
+def test_toppling_block_opens_base_except_at_hinge() -> None:
+    """A block twice as high as wide topples at λ = 1/2 with friction 0.6: only one end of its base opens."""
     scene = courses([[1]], width=0.2, height=0.4)
     outcome = limit(scene)
     frame = mechanism_frame(scene, outcome)
@@ -307,12 +305,12 @@ def test_a_block_that_topples_opens_its_base_up_to_the_edge_it_turns_about() -> 
     assert sorted(frame.state) == [JointState.STICK, JointState.OPEN]
     left = np.argmin(wall_points(scene).position[:, 0])
     assert frame.state[left] == JointState.OPEN
-    # All of its weight stands on the edge, 0.6 of it at most along the base.
+    # Its whole weight acts on the hinge, and at most 0.6 of it as shear.
     assert frame.normal[1 - left] * wall_points(scene).area[1 - left] == pytest.approx(-scene.mass[0] * 9.81, rel=1e-6)
 
 
-def test_a_block_that_slides_is_said_to_slide_also_where_it_dilates() -> None:
-    """Twice as wide as high it slides at λ = 0.6, and associated joints lift it by 0.6 of the way."""
+def test_sliding_block_that_dilates_has_state_slide() -> None:
+    """A block twice as wide as high slides at λ = 0.6, and associated joints lift it by 0.6 times the slip."""
     scene = courses([[1]], width=0.4, height=0.2)
     frame = mechanism_frame(scene, limit(scene))
     assert frame is not None
@@ -320,8 +318,8 @@ def test_a_block_that_slides_is_said_to_slide_also_where_it_dilates() -> None:
     assert (frame.state == JointState.SLIDE).all()
 
 
-def test_states_under_load_follow_the_law() -> None:
-    """Tension 1e5 Pa on 1e10 Pa/m opens beyond 1e-5 m; cohesion 3e5 Pa and friction 0.6 set when it slides."""
+def test_states_under_load_follow_joint_law() -> None:
+    """Tension 1e5 Pa on 1e10 Pa/m opens beyond 1e-5 m; sliding follows from cohesion 3e5 Pa and friction 0.6."""
     scene = panel(joint=BRITTLE)
     points = wall_points(scene)
     n = len(points)
@@ -344,8 +342,8 @@ def test_states_under_load_follow_the_law() -> None:
 CLOSING = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
 
 
-def test_a_joint_is_crushed_once_it_has_closed_for_good_as_at_its_strength() -> None:
-    """2 MPa on 1e10 Pa/m, reached at a closure of 10 µm; what closed less hardens still, what opens is open."""
+def test_joint_is_crushed_from_plastic_closure_at_strength() -> None:
+    """Strength 2 MPa at a closure of 10 µm: joints that closed less still harden, and joints that open are open."""
     cap = {"compressive_strength": 2e6, "peak_closure": 1e-5, "compressive_fracture_energy": 1e3}
     scene = courses([[1]], width=0.2, height=0.2, joint={**CLOSING, **cap})
     points, one = wall_points(scene), np.ones(2)
@@ -356,8 +354,8 @@ def test_a_joint_is_crushed_once_it_has_closed_for_good_as_at_its_strength() -> 
     assert (states_under_load(sound, points, -2e-4 * one, -2e6 * one, 0 * one, 0 * one, closed) == 0).all()
 
 
-def test_states_follow_the_cone_of_a_law_of_ones_own() -> None:
-    """Tan φ = 0.2 in the law, 0.6 in the material: 0.3 of the pressure slides, as does a lift of 0.2 of the slip."""
+def test_states_follow_cone_of_user_defined_law() -> None:
+    """tan φ = 0.2 in the law, 0.6 in the material: 0.3 of the pressure slides, as does an opening of 0.2 slips."""
     law = replace(COULOMB, name="smooth", cone=lambda _: (0.2, 0.0, 0.0))
     joint = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, "law": law}
     scene = courses([[1]], width=0.2, height=0.2, joint=joint)
@@ -368,8 +366,8 @@ def test_states_follow_the_cone_of_a_law_of_ones_own() -> None:
     assert (states_of_mechanism(scene, points, 0.2 * one, one) == JointState.SLIDE).all()
 
 
-def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
-    """The loads of the series are those of the curve; at the end the wall falls, its base open at the back."""
+def test_run_is_recorded_up_to_collapse(tmp_path: Path) -> None:
+    """The loads of the series are those of the curve; at the end the wall falls, with open joints."""
     scene = courses([[1], [1]], width=0.2, height=0.2, **STIFF)
     recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("dem-dynamic", scene, 0.02, recorder)
@@ -384,7 +382,7 @@ def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     rests, fall = outcome.curve[:-1], loads[loads == outcome.upper]
     assert set(loads) == {*rests[:, 1], outcome.upper}
     assert 1 < len(fall) <= 13
-    # At rest, the corner at the control point has moved as the curve says.
+    # At rest, the displacement of the control point is that of the curve.
     block, at, direction = scene.control_point
     corner = np.flatnonzero((scene.blocks.vertices == at).all(axis=1) & (scene.blocks.owner == block[0]))[0]
     for multiplier, grid in zip(loads, grids, strict=True):
@@ -396,8 +394,8 @@ def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     assert np.abs(arrays(grids[-1].GetPointData())["velocity [m/s]"]).max() > 1e-4
 
 
-def test_the_fall_of_a_wall_whose_joints_break_is_recorded_though_its_bracket_ends_beyond(tmp_path: Path) -> None:
-    """The load of the fall is that of the curve's end; the bracket goes on by the last step."""
+def test_fall_of_breaking_wall_is_recorded_below_upper_bound(tmp_path: Path) -> None:
+    """The load of the fall is that of the curve's end; the bracket extends beyond by the last step."""
     soft = {**BRITTLE, "cohesion": 2e4, "tensile_strength": 1e4, "fracture_energy_1": 10.0, "fracture_energy_2": 50.0}
     scene = courses([[1], [1]], width=0.2, height=0.2, joint=soft)
     recorder = MotionRecorder(scene, tmp_path)
@@ -415,8 +413,8 @@ def test_the_fall_of_a_wall_whose_joints_break_is_recorded_though_its_bracket_en
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-def test_joints_that_bear_nothing_neither_slide_nor_open(model: str) -> None:
-    """Head joints of rigid blocks in courses under their weight, of which programs leave 1e-12 Pa and 1e-21 m."""
+def test_unloaded_joints_neither_slide_nor_open(model: str) -> None:
+    """Head joints of rigid blocks under dead load, in which programs leave 1e-12 Pa and 1e-21 m."""
     scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], 0.4, 0.2, **STIFF)
     recorder: Any = MotionRecorder(scene, None) if model == "dem-dynamic" else StaticRecorder(scene, None)
     recorder.finish(run_model(model, scene, 0.1, recorder))
@@ -425,10 +423,10 @@ def test_joints_that_bear_nothing_neither_slide_nor_open(model: str) -> None:
     assert (rest.state == JointState.STICK).all()
 
 
-def test_states_of_rest_are_recorded_as_they_are_found(tmp_path: Path) -> None:
-    """The loads and displacements of the series are those of the curve, and every state stands in equilibrium.
+def test_static_states_are_recorded_in_equilibrium(tmp_path: Path) -> None:
+    """The loads and displacements of the series are those of the curve.
 
-    At rest, the tractions on a block's joints carry its weight and push; and its points sum up to the base's shear.
+    In each state, the tractions on the base sum to the wall's weight and to the live load.
     """
     scene = courses([[1], [1]], width=0.2, height=0.2, **STIFF)
     recorder = StaticRecorder(scene, tmp_path)
@@ -462,8 +460,8 @@ def test_states_of_rest_are_recorded_as_they_are_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("modes", [6, 10, "all"])
-def test_stress_of_a_uniform_strain_is_hookes(modes: ModeCount) -> None:
-    """In every block, whatever else it may do; on a mesh whose nodes tell its modes apart."""
+def test_uniform_strain_has_hookes_stress(modes: ModeCount) -> None:
+    """In every block, in addition to other motions; on a mesh whose nodes distinguish its modes."""
     scene = panel(block__young=2e9, block__poisson=0.25, **STIFF)
     wall = modal_wall(scene, 2, modes)
     gradient = np.array([[3e-5, 1e-5], [2e-5, -4e-5]])  # of u_i along x_j
@@ -481,8 +479,8 @@ def test_stress_of_a_uniform_strain_is_hookes(modes: ModeCount) -> None:
 
 
 @pytest.mark.parametrize("settings", [{"cells": 2, "modes": "all"}, {"cracks": "blocks"}])
-def test_a_run_is_recorded_on_its_own_mesh(settings: dict[str, Any], tmp_path: Path) -> None:
-    """Of other settings than the default ones; at rest, its mean vertical stress is that at half its height."""
+def test_run_is_recorded_on_mesh_of_its_settings(settings: dict[str, Any], tmp_path: Path) -> None:
+    """For non-default settings; at rest, the mean vertical stress is that at half the height."""
     inner = {"friction": 0.6, "cohesion": 1e6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     crack = {"inner_joint": inner} if "cracks" in settings else {}
     scene = panel(wall__length=0.48, wall__height=0.12, block__young=1e9, **STIFF, **crack)
@@ -500,7 +498,7 @@ def test_a_run_is_recorded_on_its_own_mesh(settings: dict[str, Any], tmp_path: P
     assert area @ stress[:, 1] / area.sum() == pytest.approx(-1800 * 9.81 * 0.12 / 2, rel=1e-4)
 
 
-def test_deformable_blocks_come_in_triangles_with_their_stress(tmp_path: Path) -> None:
+def test_deformable_blocks_are_recorded_as_triangles_with_stress(tmp_path: Path) -> None:
     """A wall at rest under its weight: the mean vertical stress of a course is the weight above its middle."""
     scene = panel(wall__length=0.48, wall__height=0.18, block__young=1e9, **STIFF)
     recorder = MotionRecorder(scene, tmp_path)
@@ -514,7 +512,7 @@ def test_deformable_blocks_come_in_triangles_with_their_stress(tmp_path: Path) -
         vertical = cells["stress [Pa]"][cells["course"] == course, 1].mean()
         assert vertical == pytest.approx(-1800 * 9.81 * above, rel=1e-4)
     assert arrays(grids[-1].GetFieldData())["multiplier"] == outcome.upper
-    # The faces of joints lie on the triangles' sides to within the deformation of a block.
+    # The faces of joints lie on the sides of triangles, up to the deformation of a block.
     joints = read_grid(frame_files(tmp_path, "joints")[-1])
     quads = 6 * np.arange(joints.GetNumberOfPoints() // 6)[:, None] + np.arange(2, 6)
     faces = (points_of(joints) + arrays(joints.GetPointData())["displacement [m]"])[quads.ravel(), :2]

@@ -1,4 +1,4 @@
-"""What ParaView is given besides the numbers: times, tensors, vectors, the ground near the wall, and a macro."""
+"""Files for ParaView: times, tensors, vectors, the ground near the wall, and the macro."""
 
 import runpy
 import sys
@@ -41,12 +41,12 @@ STIFF = {"friction": 0.7, "normal_stiffness": 1e8, "shear_stiffness": 1e8}
         ([], []),
     ],
 )
-def test_time_is_seconds_or_the_load_where_that_goes_up(frames: Any, shown: list[float]) -> None:
+def test_frame_times_are_seconds_or_increasing_loads(frames: Any, shown: list[float]) -> None:
     assert times_shown(frames) == pytest.approx(shown, abs=1e-12)
 
 
 def tower() -> Scene:
-    """Two blocks of 0.5 × 0.5 m whose ground moves by half a sine."""
+    """Two blocks of 0.5 × 0.5 m on ground that moves by half a sine."""
     size = {"courses": [[1], [1]], "block_width": 0.5, "block_height": 0.5, "thickness": 0.3}
     pulse = {"pulse": {"kind": "half-sine", "amplitude": 1.0, "period": 1.0}, "quantity": "g"}
     return scene_from_dict(
@@ -61,8 +61,8 @@ def tower() -> Scene:
     )
 
 
-def test_the_fall_of_a_critical_scale_is_kept_in_seconds_and_its_shape_is_drawn(tmp_path: Path) -> None:
-    """The tower turns about its toe, against the ground's acceleration; of all scales tried the upper one is kept."""
+def test_fall_at_critical_scale_is_recorded_in_seconds(tmp_path: Path) -> None:
+    """The tower turns about its toe, against the ground's acceleration; of all scales tried only the upper is kept."""
     scene = tower()
     recorder = motion_recorder(scene, tmp_path)
     outcome = run_model("dem-dynamic", scene, 0.3, recorder)
@@ -87,15 +87,15 @@ def test_the_fall_of_a_critical_scale_is_kept_in_seconds_and_its_shape_is_drawn(
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
-def test_a_wall_that_falls_under_its_dead_load_is_seen_to_fall(model: str, tmp_path: Path) -> None:
-    """Two blocks over an opening without a lintel hang in the air: they fall, and what they hung between stays."""
+def test_fall_under_dead_load_is_recorded(model: str, tmp_path: Path) -> None:
+    """Two blocks over an opening without a lintel are unsupported: they fall, and the blocks around them stay."""
     scene = courses([[1, -2, 1], [1, 1, 1, 1]], joint=STIFF, block={"density": 2000.0, "young": 1e10})
     recorder = motion_recorder(scene, tmp_path)
     outcome = run_model(model, scene, 0.1, recorder)
     assert outcome.status == "infeasible"
     save_outcome(outcome, tmp_path)
     recorder.finish(outcome)
-    assert load_outcome(tmp_path)[0].status == "infeasible"  # moments that come after it are its own
+    assert load_outcome(tmp_path)[0].status == "infeasible"  # frames written later belong to it
     hanging = np.isin(np.arange(len(scene.blocks)), [3, 4])
     assert outcome.motion[hanging, 1] == pytest.approx(-1.0, abs=0.01)
     assert np.abs(outcome.motion[~hanging]).max() < 0.01
@@ -104,11 +104,11 @@ def test_a_wall_that_falls_under_its_dead_load_is_seen_to_fall(model: str, tmp_p
     assert {float(grid.field_data["multiplier"][0]) for grid in grids} == {0.0}
     fallen = [float(np.asarray(grid.point_data[DISPLACEMENT])[:, 1].min()) for grid in grids]
     assert fallen == sorted(fallen, reverse=True)
-    assert fallen[-1] < -0.05 * 0.175  # as far as counts as a collapse
+    assert fallen[-1] < -0.05 * 0.175  # the displacement that counts as a collapse
 
 
-def test_of_a_dead_load_that_is_put_on_twice_the_second_fall_is_seen(tmp_path: Path) -> None:
-    """A block that is glued to another one's side, at once and then slowly: it would fall, jump back and fall again."""
+def test_only_fall_under_slow_dead_load_is_recorded(tmp_path: Path) -> None:
+    """The dead load on a glued block is applied at once, then slowly: only the second fall is recorded."""
     glue = {"cohesion": 15e3, "tensile_strength": 15e3}
     scene = courses([[1, -1], [1, 1]], joint=STIFF | glue, block={"density": 2000.0})
     recorder = motion_recorder(scene, tmp_path)
@@ -122,8 +122,8 @@ def test_of_a_dead_load_that_is_put_on_twice_the_second_fall_is_seen(tmp_path: P
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
-def test_blocks_that_topple_keep_their_shape(model: str) -> None:
-    """Sides are as long as at rest where blocks have turned, and the top is where the response says that it is."""
+def test_toppling_blocks_keep_their_shape(model: str) -> None:
+    """Sides of rotated blocks keep their length, and the top is where the response has it."""
     scene = tower()
     recorder = ResponseRecorder(scene, None)
     response = respond(model, scene, 2.0, observe=recorder, rows=2000, after=0.3)
@@ -143,8 +143,8 @@ def test_blocks_that_topple_keep_their_shape(model: str) -> None:
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
-def test_jumps_are_displacements_of_b_less_those_of_a_however_far_these_turn(model: str) -> None:
-    """Of a tower from its rest to a fall, in space and along a normal that turns with a, to the 10 µm of blocks."""
+def test_jumps_are_relative_displacements_at_large_rotation(model: str) -> None:
+    """For a tower up to its fall, in space and along a normal that turns with block a, to 10 µm."""
     scene = tower()
     recorder = ResponseRecorder(scene, None)
     respond(model, scene, 2.0, observe=recorder, rows=2000, after=0.3)
@@ -166,8 +166,8 @@ def test_jumps_are_displacements_of_b_less_those_of_a_however_far_these_turn(mod
             assert np.abs(shown[(place == at).all(axis=1)] - jump).max() < 1e-5
 
 
-def test_the_shape_of_a_fall_is_one_that_can_be_seen() -> None:
-    """Its farthest corner has gone nearly a tenth of the wall's size, whatever it did in the end."""
+def test_shape_of_fall_has_visible_size() -> None:
+    """Its farthest corner has moved by nearly a tenth of the wall's size, whatever the final displacement."""
     scene = tower()
     response = respond("dem-dynamic", scene, 2.0, rows=200)
     assert response.verdict == "collapse"
@@ -176,7 +176,7 @@ def test_the_shape_of_a_fall_is_one_that_can_be_seen() -> None:
     assert 0.07 < farthest / np.sqrt(0.5) < 0.1
 
 
-def test_stresses_are_tensors_with_the_principal_ones_beside_them() -> None:
+def test_stresses_are_tensors_with_principal_stresses() -> None:
     scene = panel()
     stress = np.random.default_rng(0).normal(size=(4, 3))
     triangles = Triangles(np.eye(3)[:, :2], np.tile([0, 1, 2], (4, 1)), np.zeros(4, dtype=np.int64))
@@ -192,8 +192,8 @@ def test_stresses_are_tensors_with_the_principal_ones_beside_them() -> None:
     assert np.transpose(ends) == pytest.approx(np.linalg.eigvalsh(tensor[:, :2, :2]))
 
 
-def test_tractions_and_jumps_are_vectors_along_normals_and_across_them(tmp_path: Path) -> None:
-    """In the motion of a limit analysis, of which every joint has some."""
+def test_tractions_and_jumps_are_vectors(tmp_path: Path) -> None:
+    """For a mechanism of limit analysis, checked against their normal and tangential components."""
     scene = panel()
     outcome = limit(scene)
     record_mechanism(scene, outcome, tmp_path)
@@ -215,10 +215,10 @@ def test_tractions_and_jumps_are_vectors_along_normals_and_across_them(tmp_path:
     ("model", "joint"),
     [("limit", {"inset": 0.03}), ("dem-static", {"inset": 0.03}), ("dem-dynamic", {"compressive_strength": 1e6})],
 )
-def test_forces_on_the_mid_lines_of_joints_hold_the_blocks(model: str, joint: dict[str, float], tmp_path: Path) -> None:
-    """Against weight and push, also turning, under the largest load at rest; pressures are uneven there.
+def test_recorded_joint_forces_balance_blocks(model: str, joint: dict[str, float], tmp_path: Path) -> None:
+    """Against weight and live load, moments included, under the largest load at rest, at which pressures are uneven.
 
-    Tractions along mid-lines do not: those are shorter than joints with an inset, and nine points not evenly spaced.
+    Tractions on mid-lines do not: with an inset these are shorter than joints, and nine points are not evenly spaced.
     """
     scene = courses([[1, 1], [0.5, 1, 0.5], [1, 1]], joint=STIFF | joint)
     observer = find_model(model).observer
@@ -246,7 +246,7 @@ def test_forces_on_the_mid_lines_of_joints_hold_the_blocks(model: str, joint: di
 
 
 @pytest.mark.parametrize("support", ["base", "fixed-first-course"])
-def test_the_ground_is_shown_near_the_wall_alone(support: str) -> None:
+def test_ground_is_shown_only_near_wall(support: str) -> None:
     scene = panel(support__kind=support)
     points = wall_points(scene)
     none, motion = np.zeros(len(points)), np.zeros((len(scene.blocks), 3))
@@ -263,10 +263,8 @@ def test_the_ground_is_shown_near_the_wall_alone(support: str) -> None:
 
 
 @pytest.mark.parametrize("folder", ["run", "two words 'n \\ slash"])
-def test_the_macro_opens_the_series_that_it_lies_beside(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str
-) -> None:
-    """ParaView is not there: what the macro asks of it is noted down, and the arrays that it names are in the files."""
+def test_macro_opens_series_in_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str) -> None:
+    """Without ParaView: the calls of the macro are recorded, and the arrays that it names exist in the files."""
     scene = courses([[1], [1]], width=0.2, height=0.4)
     out = tmp_path / folder
     record_mechanism(scene, limit(scene), out)
@@ -297,7 +295,7 @@ def test_the_macro_opens_the_series_that_it_lies_beside(
     assert names["SCALE"] * farthest == pytest.approx(DRAWN * np.sqrt(0.2 * 0.8))
 
 
-def test_a_series_that_begins_anew_takes_its_macro_away(tmp_path: Path) -> None:
+def test_new_series_deletes_old_macro(tmp_path: Path) -> None:
     scene = courses([[1], [1]], width=0.2, height=0.4)
     outcome = limit(scene)
     record_mechanism(scene, outcome, tmp_path)

@@ -1,4 +1,4 @@
-"""Reactions and works along a path: what is held bears what pushes, state by state."""
+"""Reactions and works along a path: in every state the reactions balance the loads."""
 
 import math
 from itertools import pairwise
@@ -35,7 +35,7 @@ def wall(name: str) -> Scene:
 
 
 def sums(scene: Scene, outcome: Outcome) -> tuple[Array, Array]:
-    """Reactions of all supports and loads on what moves, both about the origin, of each row ``(n, 3)``."""
+    """Sums of reactions of all supports and of loads on free blocks, about the origin, for each row ``(n, 3)``."""
     about, total = Supports(scene, wall_points(scene)).about, np.zeros((len(outcome.path), 3))
     for k, (x, y) in enumerate(about):
         px, py, moment = outcome.path[:, 3 * k : 3 * k + 3].T
@@ -57,8 +57,8 @@ EACH = [(model, tolerance, name) for model, tolerance in TOLERANCES.items() for 
     ("model", "tolerance", "name"),
     [*EACH, ("fem", 3e-4, "base"), ("fem", 3e-4, "point"), *at_length(("fem", 3e-4, "corners"))],
 )
-def test_reactions_balance_the_loads_in_every_state_at_rest(model: str, tolerance: float, name: str) -> None:
-    """In force and moment: to the tolerance of a program, and of rest: each block's 1e-5 weights, of each block."""
+def test_reactions_balance_loads_in_every_state_at_rest(model: str, tolerance: float, name: str) -> None:
+    """In force and moment, to the tolerance of a program, or of rest, which is 1e-5 weights for each block."""
     scene = wall(name)
     outcome = run_model(model, scene, 0.3)
     rests = outcome.curve_columns()[AT_REST] == 1
@@ -70,8 +70,8 @@ def test_reactions_balance_the_loads_in_every_state_at_rest(model: str, toleranc
         assert np.abs(outcome.path[rests, 3 * k + 2]).max() < tolerance * np.abs(loads[rests]).max()
 
 
-def test_a_block_on_its_base_by_hand() -> None:
-    """A block of 1 m × 2 m × 1 m and 1000 kg/m³ topples at λ = 0.5; then the base bears it at its right corner."""
+def test_reaction_of_block_by_hand() -> None:
+    """A block of 1 m × 2 m × 1 m and 1000 kg/m³ topples at λ = 0.5, with its reaction at the right corner."""
     joint = {"friction": 0.9} | STIFFNESS
     scene = courses([[1]], width=1, height=2, wall__thickness=1.0, block__density=1000.0, joint=joint)
     outcome = run_model("limit", scene)
@@ -84,8 +84,8 @@ def test_a_block_on_its_base_by_hand() -> None:
     assert np.isnan([columns[work][0] for work in WORKS]).all()
 
 
-def test_places_of_moments_are_told_without_what_rounding_leaves_of_zero() -> None:
-    """An arch about the origin, whose springings cosines and sines of half a turn put at 1e-16 m."""
+def test_reference_points_are_printed_without_rounding_errors() -> None:
+    """An arch about the origin, whose springings are at 1e-16 m because of sin π."""
     rays = [(math.cos(angle), math.sin(angle)) for angle in np.linspace(math.pi, 0, 4)]
     ends = np.array([[0.7 * np.array(ray), 1.3 * np.array(ray)] for ray in rays])
     voussoirs = [np.array([a[0], b[0], b[1], a[1]]) for a, b in pairwise(ends)]
@@ -94,8 +94,8 @@ def test_places_of_moments_are_told_without_what_rounding_leaves_of_zero() -> No
     assert "ground moment about (0, 0) [N m]" in Supports(scene, wall_points(scene)).columns
 
 
-def test_stepped_ground_is_a_support_a_piece() -> None:
-    """A beam on two held blocks, its weight in the middle: half of it on each, no moment about where they touch it."""
+def test_each_piece_of_stepped_ground_is_a_support() -> None:
+    """A beam with its weight in the middle between two held blocks, each of which carries half of it."""
     joint = {"friction": 0.6} | STIFFNESS
     scene = courses([[1, -1, 1], [3]], width=0.2, height=0.2, joint=joint, support__kind="fixed-first-course")
     outcome = run_model("dem-static", scene, 0.05)
@@ -106,8 +106,8 @@ def test_stepped_ground_is_a_support_a_piece() -> None:
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-def test_the_loads_work_is_what_they_do_on_the_path(model: str) -> None:
-    """A force P = λ f at the control point works ∫ P du; the dead load of an elastic pile weight times settlement."""
+def test_works_of_loads_along_path(model: str) -> None:
+    """A force P = λ f at the control point does the work ∫ P du; the dead load does positive work at first."""
     scene = wall("point")
     outcome = run_model(model, scene, 0.1)
     columns = outcome.curve_columns()
@@ -120,7 +120,7 @@ def test_the_loads_work_is_what_they_do_on_the_path(model: str) -> None:
     assert (np.diff(live) >= 0).all()
 
 
-def test_the_path_comes_back_from_disk(tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_path_is_stored(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder, outcome = tmp_path_factory.mktemp("path"), run_model("dem-static", wall("base"), 0.1)
     save_outcome(outcome, folder)
     back = load_outcome(folder)[0]
@@ -128,13 +128,13 @@ def test_the_path_comes_back_from_disk(tmp_path_factory: pytest.TempPathFactory)
     assert np.array_equal(back.path, outcome.path)
 
 
-def test_a_path_has_as_many_rows_as_the_curve() -> None:
+def test_path_needs_as_many_rows_as_curve() -> None:
     with pytest.raises(ValueError, match="path has 3 rows"):
         Outcome("wall", "mine", "undecided", curve=np.zeros((2, 2)), path=np.zeros((3, 1)), path_columns=("x",))
 
 
-def test_a_held_block_that_ties_alone_touch_bears_their_pull_about_the_middle_of_their_ends() -> None:
-    """Two rods from a block to a rock apart from it, of 30 and 50 N, whose ends are 0.2 m above one another."""
+def test_held_block_touched_only_by_ties_carries_their_pull() -> None:
+    """Two rods with 30 and 50 N to a rock that nothing else touches, with ends 0.2 m above each other."""
     rod, ends = {"from": [0.3, 0.6], "area": 1e-4, "young": 2e11, "yield": 1e3}, np.array([[1.5, 0.15], [1.5, 0.35]])
     rods = [rod | {"to": end.tolist()} for end in ends]
     scene = courses([[1, -1, 1], [1]], width=0.6, height=0.4, support__kind="fixed-first-course", tie=rods)
@@ -147,13 +147,13 @@ def test_a_held_block_that_ties_alone_touch_bears_their_pull_about_the_middle_of
     assert named["block 1 moment about (1.5, 0.25) [N m]"] == pytest.approx(0.1 * (pull[0, 0] - pull[1, 0]))
 
 
-def test_a_held_block_that_nothing_touches_is_no_support() -> None:
+def test_untouched_held_block_is_no_support() -> None:
     scene = courses([[1, -1, 1], [1]], width=0.6, height=0.4, support__kind="fixed-first-course")
     assert Supports(scene, wall_points(scene)).block.tolist() == [0]
 
 
-def test_what_falls_holds_its_pins_with_more_than_forces() -> None:
-    """The last row of a wall that fell is in motion: what holds a pinned block then is not known."""
+def test_pin_reactions_of_falling_wall_are_unknown() -> None:
+    """The last row of a wall that fell is in motion, so the reaction of a pinned block is unknown."""
     columns = run_model("dem-dynamic", wall("corners"), 0.1).curve_columns()
     assert columns[AT_REST].tolist() == [1] * (len(columns[AT_REST]) - 1) + [0]
     pinned = [values for name, values in columns.items() if name.startswith("pinned block")]
@@ -161,8 +161,8 @@ def test_what_falls_holds_its_pins_with_more_than_forces() -> None:
     assert all(np.isnan(values[-1]) and np.isfinite(values[:-1]).all() for values in pinned)
 
 
-def test_a_held_beam_bears_what_its_joints_do_not() -> None:
-    """A beam that is level and does not rise, pushed 0.1 m above its middle, on joints that carry nothing."""
+def test_reaction_of_held_beam() -> None:
+    """A level beam at fixed height, pushed 0.1 m above its middle, on joints that carry nothing."""
     beam = {"height": 0.1, "mass": 50.0, "condition": "fixed-height", "drive": {"force": [2.0, 0.0], "at": 0.39}}
     scene = panel(wall__length=0.48, wall__height=0.24, load={"gravity": 9.81}, beam=beam | {"force": [0.0, -300.0]})
     supports = Supports(scene, wall_points(scene))
@@ -177,8 +177,8 @@ def test_a_held_beam_bears_what_its_joints_do_not() -> None:
     assert [np.isnan(x) for x in falling] == [name.startswith("beam") for name in supports.columns]
 
 
-def test_a_moment_on_a_pinned_block_is_held_by_its_pins() -> None:
-    """Of 2 N m at λ = 1, on a wall whose joints carry nothing."""
+def test_moment_on_pinned_block_is_carried_by_pins() -> None:
+    """A moment of 2 N m at λ = 1, on a wall whose joints carry nothing."""
     live = {"kind": "moment", "at": [0.1, 0.03], "moment": 2.0}
     scene = panel(support__kind="corners", load__live=live)
     supports, none = Supports(scene, wall_points(scene)), np.zeros((len(wall_points(scene)), 2))
@@ -186,14 +186,14 @@ def test_a_moment_on_a_pinned_block_is_held_by_its_pins() -> None:
     assert with_it - without == pytest.approx([0.0, 0.0, -6.0, 0.0, 0.0, 0.0])
 
 
-def test_moments_of_the_ground_are_about_the_middle_of_where_it_is_touched() -> None:
-    """Whatever number of points that is in: joints of 0.4 and 0.2 m have two each."""
+def test_ground_moment_is_about_middle_of_contacts() -> None:
+    """Independent of the number of points: joints of 0.4 and 0.2 m have two each."""
     scene = courses([[1, 0.5]], width=0.4)
     assert Supports(scene, wall_points(scene)).about == pytest.approx(np.array([[0.3, 0.0]]))
 
 
 @pytest.mark.parametrize("angle", [5.0, 1e-7])
-def test_a_support_that_turns_has_come_free_once_nothing_bears_but_where_it_turns(angle: float) -> None:
+def test_rotating_support_is_free_if_loaded_only_at_its_centre(angle: float) -> None:
     """The right half of the ground under a block turns about the block's corner, however little."""
     live = {"kind": "settlement", "box": [[0.2, -9.0], [9.0, 0.1]], "rotation_angle": angle, "about": [0.4, 0.0]}
     tie = {"from": [0.2, 0.1], "to": [0.3, -0.01], "area": 1e-4, "young": 2e11, "yield": 1e3}
@@ -207,12 +207,12 @@ def test_a_support_that_turns_has_come_free_once_nothing_bears_but_where_it_turn
     assert (moves & (at > 0.39)).any()
     assert supports.have_come_free(free, np.zeros(1))
     assert not supports.have_come_free(pressed, np.zeros(1))
-    assert not supports.have_come_free(free, np.array([50.0]))  # a taut tie bears as well
+    assert not supports.have_come_free(free, np.array([50.0]))  # a taut tie loads the support, too
 
 
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic"])
-def test_ties_take_their_part(model: str) -> None:
-    """A pier pushed to the right, tied to a rock beside it and to an anchor: all that holds it balances its loads."""
+def test_ties_and_ground_balance_loads(model: str) -> None:
+    """A pier pushed to the right, tied to the rock beside it and to an anchor: all reactions balance the loads."""
     rock = {"from": [0.1, 0.5], "to": [-0.5, -0.05], "area": 1e-5, "young": 2e11, "yield": 150.0}
     anchor = {"from": [0.1, 0.7], "to": [-1.0, 0.7], "area": 1e-5, "young": 2e11, "yield": 80.0, "preload": 20.0}
     joint = {"friction": 0.9} | STIFFNESS

@@ -1,4 +1,4 @@
-"""An outcome is consistent, and comes back from disk as it went, or not at all."""
+"""Outcomes: consistency, storage without loss, and detection of damaged files."""
 
 import json
 import math
@@ -23,7 +23,7 @@ numbers = st.floats(0, 1e6)
     message=st.text(max_size=50),
     rows=st.integers(0, 5),
 )
-def test_an_outcome_comes_back_from_disk_as_it_went(
+def test_outcome_is_unchanged_by_storage(
     tmp_path_factory: pytest.TempPathFactory, bracket: list[float], dofs: int | None, message: str, rows: int
 ) -> None:
     folder = tmp_path_factory.mktemp("outcome")
@@ -40,7 +40,7 @@ def test_an_outcome_comes_back_from_disk_as_it_went(
     assert np.array_equal(back.force, motion[:, :2])
 
 
-def test_every_field_of_an_outcome_is_kept(tmp_path: Path) -> None:
+def test_every_field_of_outcome_is_stored(tmp_path: Path) -> None:
     given: dict[str, Any] = {"multiplier": 0.5, "lower": 0.4, "upper": 0.6, "dofs": 6, "steps": 7, "fall": 0.02}
     given |= {each.name: np.full((2, 3), 0.1) for each in fields(Outcome) if each.type is Array}
     given["curve"] = np.full((2, 2), 0.1)
@@ -55,8 +55,8 @@ def test_every_field_of_an_outcome_is_kept(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "contents",
     [
-        {"status": "collapse"},  # a collapse has a multiplier
-        {"status": "undecided", "multiplier": 0.3},  # and nothing else has
+        {"status": "collapse"},  # a collapse needs a multiplier
+        {"status": "undecided", "multiplier": 0.3},  # only a collapse may have one
         {"status": "collapse", "multiplier": 0.3, "lower": 0.4},
         {"status": "collapse", "multiplier": 0.3, "upper": 0.2},
         {"status": "collapse", "multiplier": math.nan},
@@ -64,20 +64,20 @@ def test_every_field_of_an_outcome_is_kept(tmp_path: Path) -> None:
         {"status": "fine"},
     ],
 )
-def test_an_inconsistent_outcome_cannot_be_made(contents: dict[str, Any]) -> None:
+def test_inconsistent_outcome_is_refused(contents: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="bracket|multiplier|status"):
         Outcome("wall", "limit", **contents)
 
 
-def test_an_outcome_is_shown_in_a_line() -> None:
-    """Without its arrays, of which a wall of a thousand blocks has pages."""
+def test_repr_of_outcome_is_one_line() -> None:
+    """Without its arrays, which would fill pages for a wall of a thousand blocks."""
     shown = repr(Outcome("wall", "limit", "collapse", 0.5, 0.5, 0.5, motion=np.ones((1000, 3))))
     assert "multiplier=0.5" in shown
     assert "\n" not in shown
     assert "1." not in shown
 
 
-def test_arrays_of_an_outcome_cannot_be_changed() -> None:
+def test_arrays_of_outcome_are_read_only() -> None:
     outcome = Outcome("wall", "limit", "undecided", motion=np.ones((2, 3)))
     with pytest.raises(ValueError, match="read-only"):
         outcome.motion[0, 0] = 2
@@ -88,14 +88,14 @@ def stored(folder: Path) -> Path:
     return folder
 
 
-def test_nothing_but_the_record_and_its_arrays_is_left_behind(tmp_path: Path) -> None:
+def test_folder_contains_only_record_and_arrays(tmp_path: Path) -> None:
     stored(stored(tmp_path))
     save_outcome(Outcome("wall", "limit", "collapse", 0.6, motion=np.zeros((4, 3))), tmp_path, "key")
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".json", ".npz"]
 
 
-def test_every_truncation_is_noticed(tmp_path: Path) -> None:
-    """A file cut off at any length is never read as whole."""
+def test_truncated_files_are_rejected(tmp_path: Path) -> None:
+    """A file cut off at any length is never read as complete."""
     stored(tmp_path)
     for path in sorted(tmp_path.iterdir()):
         whole = path.read_bytes()
@@ -107,7 +107,7 @@ def test_every_truncation_is_noticed(tmp_path: Path) -> None:
     load_outcome(tmp_path)
 
 
-def test_a_flipped_bit_in_the_arrays_is_noticed(tmp_path: Path) -> None:
+def test_flipped_bit_in_arrays_is_rejected(tmp_path: Path) -> None:
     stored(tmp_path)
     arrays = next(tmp_path.glob("*.npz"))
     content = bytearray(arrays.read_bytes())
@@ -118,14 +118,14 @@ def test_a_flipped_bit_in_the_arrays_is_noticed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("record", ["", "[]", "{}", "null", '{"key": 1}', '{"arrays": "x.npz", "sha256": ""}'])
-def test_a_record_of_something_else_is_noticed(tmp_path: Path, record: str) -> None:
+def test_foreign_record_is_rejected(tmp_path: Path, record: str) -> None:
     stored(tmp_path)
     (tmp_path / "outcome.json").write_text(record)
     with pytest.raises(StoreError):
         load_outcome(tmp_path)
 
 
-def test_a_write_that_fails_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_write_keeps_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "table.csv"
     write_atomically(path, b"before")
 
@@ -139,7 +139,7 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path: Path, monkeypatch: p
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_the_record_is_json_that_anyone_can_read(tmp_path: Path) -> None:
+def test_record_is_plain_json(tmp_path: Path) -> None:
     record = json.loads((stored(tmp_path) / "outcome.json").read_text())
     assert record["multiplier"] == 0.5
     assert record["lower"] is None

@@ -1,4 +1,4 @@
-"""DXF files of one small wall, drawn in every way that people draw."""
+"""DXF files of one small wall, drawn in different ways."""
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
@@ -14,7 +14,7 @@ from tests.walls import content
 Outline = Sequence[tuple[float, float]]
 
 Draw = Callable[[Any, Any], None]
-"""Draws into a document and its model space."""
+"""Function that draws into a DXF document and its model space."""
 
 
 def box(left: float, bottom: float, right: float, top: float) -> Outline:
@@ -27,7 +27,7 @@ GROUND = box(-500.0, -50.0, 900.0, 0.0)
 
 
 def dxf(path: Path, *draw: Draw, ground: bool = True) -> Path:
-    """A drawing with what is drawn on layer 0 and, if asked for, a ground on layer Ground."""
+    """Save a DXF file with what `draw` draws and, if `ground`, an outline on layer Ground."""
     document = ezdxf.new()  # type: ignore[attr-defined]
     document.units = 4  # mm
     for one in draw:
@@ -47,7 +47,7 @@ def closed(outlines: Iterable[Outline] = BRICKS, layer: str = "0") -> Draw:
 
 
 def lines(*segments: Sequence[float], layer: str = "0") -> Draw:
-    """LINEs, each x and y of its start and end."""
+    """LINEs, each given as x and y of its start and of its end."""
 
     def draw(_: Any, space: Any) -> None:
         for a, b, c, d in segments:
@@ -57,7 +57,7 @@ def lines(*segments: Sequence[float], layer: str = "0") -> Draw:
 
 
 def own_lines(outlines: Iterable[Outline] = BRICKS) -> Draw:
-    """Every block its own four LINEs."""
+    """Four LINEs for every block, not shared with its neighbours."""
     return lines(*[(*p, *q) for outline in outlines for p, q in zip(outline, [*outline[1:], outline[0]], strict=True)])
 
 
@@ -70,7 +70,7 @@ def scene_of(path: Path, **wall: Any) -> Scene:
 
 
 def multiplier(scene: Scene) -> float:
-    """The collapse load, as exact as the solver's corner is."""
+    """Collapse multiplier, as exact as the linear program's vertex solution."""
     forces = limit_state(equilibrium(scene)).forces
     assert forces.status == "optimal"
     return float(forces.multiplier)

@@ -1,4 +1,4 @@
-"""Blocks of any outline: one body each, whatever its shape, in every model."""
+"""Blocks of any outline, convex or not: one body each in every model."""
 
 from typing import Any
 
@@ -61,7 +61,7 @@ def holds(found: Outcome, exact: float) -> bool:
 
 @st.composite
 def stars(draw: st.DrawFn) -> Array:
-    """Polygons, convex as a rule by no means, that are seen whole from one point inside."""
+    """Star-shaped polygons, mostly not convex."""
     n = draw(st.integers(5, 12))
     turns = np.array(draw(st.lists(st.floats(0.5, 1.0), min_size=n, max_size=n)))
     radius = np.array(draw(st.lists(st.floats(0.1, 1.0), min_size=n, max_size=n)))
@@ -71,7 +71,7 @@ def stars(draw: st.DrawFn) -> Array:
 
 
 @given(stars())
-def test_moments_are_those_of_the_triangles_it_is_made_of(star: Array) -> None:
+def test_area_moments_are_the_sum_over_triangles(star: Array) -> None:
     """Each triangle has J = A (a² + b² + c²) / 36 about its centroid."""
     blocks = Blocks.from_polygons([star])
     blocks.check()
@@ -88,7 +88,7 @@ def test_moments_are_those_of_the_triangles_it_is_made_of(star: Array) -> None:
 
 
 @given(stars(), st.floats(-1.2, 1.2), st.floats(-1.2, 1.2))
-def test_a_point_is_in_a_block_where_shapely_says_so(star: Array, x: float, y: float) -> None:
+def test_points_in_a_block_agree_with_shapely(star: Array, x: float, y: float) -> None:
     blocks = Blocks.from_polygons([star])
     point = star.mean(axis=0) + [x, y]
     away = shapely.Polygon(star).distance(shapely.Point(point))
@@ -107,7 +107,7 @@ def test_a_point_is_in_a_block_where_shapely_says_so(star: Array, x: float, y: f
         (ELL[::-1], "encloses no area"),
     ],
 )
-def test_outlines_of_no_block_are_refused(corners: Any, fault: str) -> None:
+def test_invalid_outlines_are_refused(corners: Any, fault: str) -> None:
     with pytest.raises(SceneError, match=fault):
         Blocks.from_polygons([np.array(box(5, 0, 6, 1), dtype=float), np.array(corners, dtype=float)]).check()
 
@@ -118,12 +118,12 @@ def test_outlines_of_no_block_are_refused(corners: Any, fault: str) -> None:
         (box(0.2, 0, 0.8, 0.5), [0.5, 0.5, 0.6]),  # fills the portal
         (box(0.3, 0, 0.7, 0.4), []),  # stands free in it
         (box(0.2, 0, 0.5, 0.4), [0.4]),
-        (box(0.2, 0, 0.8, 0.6), None),  # reaches into its top, and shares both legs
+        (box(0.2, 0, 0.8, 0.6), None),  # overlaps its top, and touches both legs
         (box(0.1, -0.5, 0.8, 0.0), [0.1]),
         (box(0.1, -0.5, 0.9, 0.1), None),
     ],
 )
-def test_blocks_meet_on_several_sides_and_never_overlap(other: Any, joints: list[float] | None) -> None:
+def test_joints_on_several_sides_and_refused_overlaps(other: Any, joints: list[float] | None) -> None:
     blocks = Blocks.from_polygons([np.array(PORTAL, dtype=float), np.array(other, dtype=float)])
     if joints is None:
         with pytest.raises(SceneError, match="overlaps"):
@@ -134,8 +134,8 @@ def test_blocks_meet_on_several_sides_and_never_overlap(other: Any, joints: list
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated, dem_static, dem_dynamic])
 @pytest.mark.parametrize("outline", [ELL, PORTAL, TEE])
-def test_a_block_of_any_outline_topples_and_slides(model: Any, outline: Any) -> None:
-    """About its right or left corner, by the lever arms of its centroid; or at the friction of its feet."""
+def test_overturning_and_sliding_of_a_block_of_any_outline(model: Any, outline: Any) -> None:
+    """It overturns about its right or left corner at the ratio of its centroid's lever arms, or slides at λ = tan φ."""
     block = Blocks.from_polygons([np.array(outline, dtype=float)])
     (x, y), width = block.centroid[0], max(corner[0] for corner in outline)
     assert holds(model(wall(outline)), (width - x) / y)
@@ -143,7 +143,7 @@ def test_a_block_of_any_outline_topples_and_slides(model: Any, outline: Any) -> 
     assert holds(model(wall(outline, friction=0.15)), 0.15)
 
 
-def test_a_deformable_block_of_any_outline_topples_and_slides() -> None:
+def test_overturning_and_sliding_of_a_deformable_block() -> None:
     block = Blocks.from_polygons([np.array(ELL, dtype=float)])
     (x, y), width = block.centroid[0], 0.5
     assert holds(fem(wall(ELL), 0.05), (width - x) / y)
@@ -158,20 +158,20 @@ TROUGH = [(0, 0), (1, 0), (1, 2), (0.75, 2), (0.75, 0.5), (0.25, 0.5), (0.25, 2)
 
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated, dem_static, dem_dynamic])
-def test_a_tee_between_piers_and_a_block_in_a_trough(model: Any) -> None:
-    """Piers rock side by side, λ = p / h, and the cap on them only shifts, whatever hangs between them; what a trough
-    holds on three sides topples with it."""
+def test_cap_on_two_piers_and_block_in_a_trough(model: Any) -> None:
+    """Piers rock in parallel, λ = p / h, and the cap on them only translates, even with a part hanging between them; a
+    block that a trough encloses on three sides overturns with it."""
     assert holds(model(wall(*PIERS, CAP, friction=1.0)), 0.3)
     assert holds(model(wall(TROUGH, box(0.25, 0.5, 0.75, 2), friction=1.0)), 0.5)
 
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated, dem_static, dem_dynamic])
-def test_a_smooth_block_tips_over_the_step_of_the_ground_that_holds_it(model: Any) -> None:
-    """b × h held up to a height s: λ (h / 2 − s) = b / 2."""
+def test_frictionless_block_overturns_over_a_step_of_the_ground(model: Any) -> None:
+    """A block b × h behind a step of height s: λ (h / 2 − s) = b / 2."""
     assert holds(model(wall(box(0, 0, 0.5, 1), friction=0.0, grounds=[STEP])), 0.25 / (0.5 - 0.25))
 
 
-def test_deformable_blocks_on_three_sides() -> None:
+def test_deformable_block_in_a_trough() -> None:
     assert holds(fem(wall(TROUGH, box(0.25, 0.5, 0.75, 2), friction=1.0), 0.05), 0.5)
 
 
@@ -187,7 +187,7 @@ def test_a_mirrored_wall_has_the_same_multiplier() -> None:
 
 
 @given(stars())
-def test_a_cut_leaves_all_of_a_block_on_either_side(star: Array) -> None:
+def test_halves_of_a_cut_block_have_its_whole_area(star: Array) -> None:
     pieces, whole = cut_in_half([star], 0.0)
     blocks = Blocks.from_polygons(pieces)
     blocks.check()
@@ -197,8 +197,8 @@ def test_a_cut_leaves_all_of_a_block_on_either_side(star: Array) -> None:
     assert find_joints(blocks).length.size >= len(pieces) - 1
 
 
-def test_a_block_cracks_on_all_of_its_axis() -> None:
-    """A C is cut through both its arms; a smooth cut lets the halves of a T topple side by side, half as far to go."""
+def test_inner_joints_run_along_the_whole_vertical_axis() -> None:
+    """A C is cut through both arms; the halves of a T with a frictionless cut overturn separately, at half width."""
     ring = [(0, 0), (1, 0), (1, 3), (0, 3), (0, 2), (0.8, 2), (0.8, 1), (0, 1)]
     scene = wall(ring, inner_joint=DRY)
     assert scene.joints.length[scene.joints.inner] == pytest.approx([1, 1])
@@ -214,7 +214,7 @@ def test_a_block_cracks_on_all_of_its_axis() -> None:
 
 
 @pytest.mark.parametrize("cells", [1, 3])
-def test_triangles_fill_a_block_and_no_more(cells: int) -> None:
+def test_triangles_cover_each_block_exactly(cells: int) -> None:
     scene = wall(*PIERS, CAP, [(x + 0.1, y + 1.3) for x, y in ELL], grounds=[STEP + [0.7, 0]])
     mesh = wall_mesh(scene, cells)
     corners = mesh.points[mesh.triangles]

@@ -1,4 +1,4 @@
-"""Materials reach the blocks and joints that they were assigned to, and later entries win."""
+"""`assign` gives materials to the selected blocks and joints; later entries override earlier ones."""
 
 from pathlib import Path
 from typing import Any
@@ -47,8 +47,8 @@ def test_later_entries_win() -> None:
     assert scene.mass[2] == pytest.approx(700 * scene.blocks.area[2] * 0.12)
 
 
-def test_names_with_dots_are_whole(tmp_path: Path) -> None:
-    """Two that end alike, and one that ends as a word that means something else."""
+def test_material_names_may_contain_dots(tmp_path: Path) -> None:
+    """Two names with the same ending, and one that ends in the keyword "joint"."""
     tables: dict[str, Any] = {
         "materials": {"oak.1": {"density": 700.0}, "stone.1": {"density": 2600.0}},
         "joints": {"my.joint": {"friction": 0.3}},
@@ -64,15 +64,15 @@ def test_names_with_dots_are_whole(tmp_path: Path) -> None:
         assert np.array_equal(beside, [name == "my.joint" for name in names_of_joints(scene)])
 
 
-def test_bed_and_head_joints_apart() -> None:
+def test_bed_and_head_joints_get_separate_materials() -> None:
     scene = assigned({"joint": "mortar", "orientation": "bed"}, {"joint": "dust", "orientation": "head"})
     run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
     assert names_of_joints(scene) == ["mortar" if dx > dy else "dust" for dx, dy in run]
 
 
 @pytest.mark.parametrize(("height", "courses"), [(0.1, 3), (0.2, 3), (0.2, 6), (0.3, 3), (0.7, 3)])
-def test_joints_on_the_border_of_a_box_are_in_it_from_either_side(height: float, courses: int) -> None:
-    """Three courses of 0.1 m end at 0.30000000000000004 m, and the box of who counts them at 0.3."""
+def test_joints_on_the_border_of_a_box_are_inside(height: float, courses: int) -> None:
+    """Whatever the rounding: three courses of 0.1 m end at 0.30000000000000004 m, but users write 0.3."""
     size = {"length": 1.2, "height": round(8 * height, 9), "block_width": 0.3, "block_height": height, "thickness": 0.1}
     level = round(courses * height, 9)
     for box in ([[0, level], [2, 9]], [[0, 0], [2, level]]):
@@ -83,7 +83,7 @@ def test_joints_on_the_border_of_a_box_are_in_it_from_either_side(height: float,
 
 
 @pytest.mark.parametrize(("width", "number"), [(0.1, 1), (0.2, 1), (0.2, 3), (0.4, 1), (0.4, 6)])
-def test_blocks_with_their_middle_on_the_border_of_a_box_are_in_it_from_either_side(width: float, number: int) -> None:
+def test_blocks_centred_on_the_border_of_a_box_are_inside(width: float, number: int) -> None:
     size = {"length": round(8 * width, 9), "height": 0.3, "block_width": width, "block_height": 0.1, "thickness": 0.1}
     middle = round((number + 0.5) * width, 9)
     for box in ([[middle, 0], [9, 1]], [[0, 0], [middle, 1]]):
@@ -93,8 +93,8 @@ def test_blocks_with_their_middle_on_the_border_of_a_box_are_in_it_from_either_s
         assert {names_of_blocks(scene)[block] for block in on} == {"oak"}
 
 
-def test_joints_by_the_pair_of_their_blocks() -> None:
-    """Either way round, "*" for any block, and "ground" for what the wall stands on."""
+def test_joints_selected_by_their_two_block_materials() -> None:
+    """In either order; "*" stands for any block, "ground" for the ground below the wall."""
     oak = {"block": "oak", "box": [[0, 0.1], [1.44, 0.2]]}
     scene = assigned(
         oak, {"joint": "mortar", "between": ["*", "oak"]}, {"joint": "dust", "between": ["ground", "block"]}
@@ -104,13 +104,13 @@ def test_joints_by_the_pair_of_their_blocks() -> None:
         assert name == ("mortar" if "oak" in pair else "dust" if "ground" in pair else "joint")
 
 
-def test_joints_in_a_box_are_those_whose_middle_is_there() -> None:
+def test_box_selects_joints_by_their_midpoint() -> None:
     scene = assigned({"joint": "mortar", "box": [[0, 0.35], [1.44, 0.37]]})
     middle = scene.joints.ends.mean(axis=1)[:, 1]
     assert names_of_joints(scene) == ["mortar" if 0.35 <= y <= 0.37 else "joint" for y in middle]
 
 
-def test_cracks_keep_their_material_and_halves_that_of_their_block() -> None:
+def test_inner_joints_keep_their_material_and_half_blocks_that_of_their_block() -> None:
     inner = {"friction": 1.0, "cohesion": 1e6}
     scene = assigned({"block": "oak", "blocks": [0]}, {"joint": "mortar", "box": [[-9, -9], [9, 9]]}, inner_joint=inner)
     names = np.array(names_of_joints(scene))
@@ -121,7 +121,7 @@ def test_cracks_keep_their_material_and_halves_that_of_their_block() -> None:
 
 @pytest.mark.parametrize("drawn", ["OAK", "Oak", "oak"])
 def test_blocks_and_joints_by_layer(drawn: str, tmp_path: Path) -> None:
-    """Names of layers that differ in capitals alone are one layer's, as in CAD programs."""
+    """Layer names are not case-sensitive, as in CAD programs."""
     document = ezdxf.new()  # type: ignore[attr-defined]
     for layer, y in (("0", 0.0), (drawn, 100.0)):
         corners = [(0.0, y), (200.0, y), (200.0, y + 100.0), (0.0, y + 100.0)]
@@ -136,7 +136,7 @@ def test_blocks_and_joints_by_layer(drawn: str, tmp_path: Path) -> None:
     assert of == {(0, 1): "mortar", (0, 2): "joint"}
 
 
-def test_a_scene_of_everything_survives_its_file_of_arrays() -> None:
+def test_scene_with_beam_tie_and_loads_survives_storage_as_arrays() -> None:
     beam = {"height": 0.1, "mass": 20.0, "condition": "level", "drive": {"force": [1, 0], "at": 0.7}}
     tie = {"from": [0, 0.39], "to": [9, 0.39], "area": 3e-4, "young": 2.1e11, "yield": 7e4}
     line = {"kind": "line", "from": [0, 0.6], "to": [1.44, 0.6], "force": [0, -1e3]}
@@ -149,8 +149,8 @@ def test_a_scene_of_everything_survives_its_file_of_arrays() -> None:
     assert (again.dead_forces.force == scene.dead_forces.force).all()
 
 
-def test_a_material_that_nothing_is_of_changes_nothing_and_is_told() -> None:
-    """Joints that crush would spread pressures over nine points, and be asked for a stiffness."""
+def test_unused_materials_are_dropped_with_a_note() -> None:
+    """If kept, the unused crushing joint would give all joints nine points and require a stiffness."""
     unused = {
         "materials": {"oak": {"density": 700.0}},
         "joints": {"weak": {"friction": 0.1, "compressive_strength": 1e6}},

@@ -1,4 +1,4 @@
-"""What is orthogonal to vectors: an orthonormal basis of it, of coordinates themselves where nothing touches them."""
+"""Orthonormal basis of the orthogonal complement of rows, and the free motions of supported blocks."""
 
 import numpy as np
 import pytest
@@ -10,20 +10,20 @@ from scipy.linalg import null_space
 from runningbond.scene import Array, complement
 from runningbond.scene.supports import free_motions
 
-WHOLE = arrays(np.int64, (2, 4), elements=st.integers(-3, 3))
+INTEGER_ROWS = arrays(np.int64, (2, 4), elements=st.integers(-3, 3))
 
 
-@given(WHOLE)
-def test_it_is_an_orthonormal_basis_of_all_that_rows_leave(rows: Array) -> None:
-    """Of as many vectors as singular values leave; dependent rows and rows of nothing leave more."""
+@given(INTEGER_ROWS)
+def test_complement_is_an_orthonormal_basis_of_the_null_space(rows: Array) -> None:
+    """Its dimension agrees with SciPy's `null_space`, also for dependent and zero rows."""
     found = complement(rows.astype(float))
     assert found.shape[1] == null_space(rows.astype(float), rcond=1e-12).shape[1]
     assert found.T @ found == pytest.approx(np.eye(found.shape[1]), abs=1e-12)
     assert rows @ found == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_block_on_a_roller_shifts_along_it_and_turns_about_it() -> None:
-    """Of all mixtures of the two, in which a library's singular vectors come in any, these are the ones."""
+def test_free_motions_of_a_block_on_a_roller_are_a_shift_and_a_rotation() -> None:
+    """Singular vectors from a library may mix the two arbitrarily; `free_motions` must not."""
     corner, inertia = np.array([0.2, -0.1]), np.array([8.0, 8.0, 0.3])
     motions, mass = free_motions(np.array([[0.0, 1.0, corner[0]]]), inertia)
     along, about = motions.T[:2]

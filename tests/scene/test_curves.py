@@ -1,4 +1,4 @@
-"""Arcs and the chords that stand for them."""
+"""Arcs of drawings and the chords that replace them."""
 
 import math
 
@@ -18,14 +18,14 @@ def circle(start: float, sweep: float, radius: float = 2.0) -> Arc:
 
 
 def angles(points: Array) -> Array:
-    """Angles of points about the centre of `circle`, going on where they come round."""
+    """Angles of points about the centre of `circle`, without jumps of 2π."""
     return np.unwrap(np.arctan2(*(points - [1.0, -1.0]).T[::-1]))
 
 
 @pytest.mark.parametrize("axes", [[[2.0, 1.0], [-0.5, 1.5]], [[2.0, 1.0], [0.5, -1.5]]])
 @pytest.mark.parametrize("sweep", [0.7, -2.0])
-def test_an_arc_runs_along_its_axes_whichever_of_them_is_to_the_left(axes: list[list[float]], sweep: float) -> None:
-    """A mirrored one is drawn with its second axis to the right of the first."""
+def test_arc_keeps_its_points_if_its_axes_are_mirrored(axes: list[list[float]], sweep: float) -> None:
+    """The second axis of a mirrored arc is to the right of the first; `Arc.along` makes the axes right-handed."""
     centre, (along, up) = np.array([3.0, -1.0]), np.array(axes)
     arc = Arc.along(centre, np.array(axes), 0.4, sweep)
     t = 0.4 + sweep * SHARES[:, None]
@@ -34,8 +34,8 @@ def test_an_arc_runs_along_its_axes_whichever_of_them_is_to_the_left(axes: list[
 
 
 @pytest.mark.parametrize("bulge", [1.0, math.tan(math.pi / 8), -0.3, -2.0])
-def test_a_bulge_is_the_tangent_of_a_quarter_of_the_angle(bulge: float) -> None:
-    """From p to q; its middle is half of the chord times the bulge to the right of it."""
+def test_bulge_is_the_tangent_of_a_quarter_of_the_angle(bulge: float) -> None:
+    """The arc from p to q passes its chord's midpoint at half the chord length times the bulge, to the right."""
     p, q = np.array([1.0, 1.0]), np.array([4.0, 5.0])
     arc = Arc.from_bulge(p, q, bulge)
     assert arc.sweep == pytest.approx(4 * math.atan(bulge))
@@ -46,8 +46,8 @@ def test_a_bulge_is_the_tangent_of_a_quarter_of_the_angle(bulge: float) -> None:
 
 
 @pytest.mark.parametrize("angle", [1e-4, 0.01, 0.5, 1.0, 2.0, 6.0])
-def test_an_arc_has_as_few_chords_as_leave_it_by_a_small_part(angle: float) -> None:
-    """Of its radius and of its length, whichever is less; the largest distance is known."""
+def test_arc_has_the_fewest_chords_that_meet_the_sagitta(angle: float) -> None:
+    """Relative to the radius or the length, whichever is less; `Chords` records the largest sagitta."""
     arc, ends = circle(0.3, angle), circle(0.3, angle).ends
     chords = Chords([arc], ends, 1e-9)
     points = chords.cut(arc)
@@ -63,8 +63,8 @@ def test_an_arc_has_as_few_chords_as_leave_it_by_a_small_part(angle: float) -> N
     assert chords.number == 1 or off(chords.number - 1) > allowed
 
 
-def test_who_draws_along_a_curve_in_either_sense_gets_the_same_chords() -> None:
-    """Cut at all corners that lie on it, and nowhere twice."""
+def test_overlapping_arcs_of_opposite_sense_share_their_chords() -> None:
+    """The common curve is cut once at every corner of the drawing that lies on it."""
     to, fro = circle(0.0, 2.0), circle(2.5, -1.5)
     corner = circle(0.0, 1.3).ends[1]
     near = corner + [3e-7, 0.0]
@@ -78,7 +78,7 @@ def test_who_draws_along_a_curve_in_either_sense_gets_the_same_chords() -> None:
         assert np.abs(both - at).min() < 1e-6
 
 
-def test_an_arc_that_passes_where_parameters_begin_is_cut_in_order() -> None:
+def test_arc_across_angle_zero_is_cut_in_order() -> None:
     arc = circle(5.5, 2.0)
     corners = [circle(0.0, at).ends[1] for at in (0.5, 6.0, 0.1)]
     found = angles(Chords([arc], np.vstack([arc.ends, *corners]), 1e-6).cut(arc))
@@ -92,8 +92,8 @@ def spline(knots: list[float] | None = None) -> BSpline:
     return BSpline([(x, y, 0) for x, y in control], order=4, knots=knots)
 
 
-def test_chords_of_a_spline_leave_it_by_a_small_part_of_its_length_between_two_knots() -> None:
-    """As far as all of them are alike; many knots do not make it coarser."""
+def test_spline_chords_meet_the_sagitta_of_one_knot_span() -> None:
+    """Relative to the mean length of the spans, which keeps splines with many knots as fine as those with few."""
     drawn, points = spline(), spline_points(spline())[:, :2]
     way = np.array([(p.x, p.y) for p in drawn.points(np.linspace(0.0, max(drawn.knots()), 4001))])
     off = shapely.distance(shapely.points(way), shapely.LineString(points)).max()
@@ -102,15 +102,15 @@ def test_chords_of_a_spline_leave_it_by_a_small_part_of_its_length_between_two_k
     assert points[[0, -1]] == pytest.approx(np.array([[0, 0], [9, 0]]))
 
 
-def test_a_spline_begins_and_ends_where_it_is_known() -> None:
-    """One with even knots at a sixth of its first, four sixths of its second and a sixth of its third control point."""
+def test_unclamped_spline_begins_and_ends_within_its_valid_knots() -> None:
+    """With uniform knots it begins at 1/6 of the first, 4/6 of the second and 1/6 of the third control point."""
     points = spline_points(spline([float(k) for k in range(11)]))[:, :2]
     assert points[0] == pytest.approx((np.array([0, 0]) + 4 * np.array([1, 3]) + np.array([3, -2])) / 6)
     assert points[-1] == pytest.approx((np.array([6, 1]) + 4 * np.array([7, 4]) + np.array([9, 0])) / 6)
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_a_whole_circle_is_cut_at_corners_on_it_all_the_way_round(sense: float) -> None:
+def test_full_circle_is_cut_at_every_corner_on_it(sense: float) -> None:
     on = [circle(0.0, at).ends[1] for at in (4.0, 1.0, 6.2)]
     whole = circle(3.0, sense * TURN)
     points = Chords([whole], np.vstack([*on, [9.0, 9.0]]), 1e-6).cut(whole)
@@ -121,8 +121,8 @@ def test_a_whole_circle_is_cut_at_corners_on_it_all_the_way_round(sense: float) 
         assert np.abs(np.mod(found - at + 1, TURN) - 1).min() < 1e-9
 
 
-def test_corners_on_either_side_of_where_parameters_begin_are_one() -> None:
-    """A hair above and below an angle of zero."""
+def test_corners_just_above_and_below_angle_zero_are_merged() -> None:
+    """At angles of ±1e-8."""
     whole = circle(0.0, TURN)
     corners = np.vstack([whole.at([1e-8, -1e-8]), whole.at(2.0)])
     points = Chords([whole], corners, 1e-6).cut(whole)

@@ -1,4 +1,4 @@
-"""Drawings that are none of a wall: one line that says what and where."""
+"""Invalid drawings: the error message is one line that says what is wrong and where."""
 
 import json
 import math
@@ -90,7 +90,7 @@ SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)
         (polyline((0, 0), (math.inf, 0), (0, 9)), "must have its corners at finite coordinates"),
     ],
 )
-def test_what_is_drawn_is_no_wall(draw: Draw, said: str, tmp_path: Path) -> None:
+def test_invalid_dxf_drawing_is_refused(draw: Draw, said: str, tmp_path: Path) -> None:
     with pytest.raises(SceneError) as refused:
         scene_of(dxf(tmp_path / "wall.dxf", draw))
     assert said in str(refused.value)
@@ -99,7 +99,7 @@ def test_what_is_drawn_is_no_wall(draw: Draw, said: str, tmp_path: Path) -> None
 
 
 EAST, NORTH = 512_345e3, 5_412_345e3
-"""Where a wall may stand on a map [mm]."""
+"""Map coordinates of a wall [mm], large enough to need many digits."""
 
 
 @pytest.mark.parametrize(
@@ -111,10 +111,10 @@ EAST, NORTH = 512_345e3, 5_412_345e3
         ([], {"live": [512345.0, 0.0]}, "the wall spans x 512345 … 512345.4 m, y 5412345 … 5412345.3 m"),
     ],
 )
-def test_a_wall_on_a_map_is_told_where_it_stands(
+def test_messages_have_enough_digits_for_map_coordinates(
     outlines: list[Outline], how: dict[str, Any], said: str, tmp_path: Path
 ) -> None:
-    """In four digits all of it was at (5.123e+05, 5.412e+06)."""
+    """With four digits all positions were printed as (5.123e+05, 5.412e+06)."""
     here = [[(x + EAST, y + NORTH) for x, y in outline] for outline in [*BRICKS, *outlines]]
     ground = [[(x + EAST, y + NORTH) for x, y in GROUND]]
     dxf(tmp_path / "wall.dxf", closed(here), closed(ground, "ground"), ground=False)
@@ -126,14 +126,14 @@ def test_a_wall_on_a_map_is_told_where_it_stands(
     assert said in str(refused.value)
 
 
-def test_open_lines_on_a_map_are_told_where_they_are(tmp_path: Path) -> None:
+def test_open_lines_at_map_coordinates_are_located(tmp_path: Path) -> None:
     segments = [(a + EAST, b + NORTH, c + EAST, d + NORTH) for a, b, c, d in SQUARE[:3]]
     with pytest.raises(SceneError, match=r"is open at \(512345000, 5412345000\) and \(512345000, 5412345100\); each"):
         scene_of(dxf(tmp_path / "wall.dxf", lines(*segments), ground=False))
 
 
 @pytest.mark.parametrize("hide", ["off", "freeze"])
-def test_a_ground_that_is_not_seen_is_pointed_out(hide: str, tmp_path: Path) -> None:
+def test_ground_on_a_hidden_layer_is_refused_with_a_hint(hide: str, tmp_path: Path) -> None:
     def hidden(document: Any, _: Any) -> None:
         getattr(document.layers.add("GROUND"), hide)()
 
@@ -145,8 +145,8 @@ def test_a_ground_that_is_not_seen_is_pointed_out(hide: str, tmp_path: Path) -> 
         scene_of(dxf(tmp_path / "wall.dxf", closed(), hidden))
 
 
-def test_a_wall_drawn_on_a_sheet_is_pointed_out(tmp_path: Path) -> None:
-    """Sheets show the model; what is drawn on them, in paper space, is a frame and titles, or a mistake."""
+def test_wall_in_paper_space_is_refused_with_a_hint(tmp_path: Path) -> None:
+    """Paper space normally holds frames and titles of sheets; a wall there is a mistake."""
 
     def on_paper(document: Any, _: Any) -> None:
         closed()(document, document.layout("Layout1"))
@@ -173,7 +173,7 @@ def test_a_wall_drawn_on_a_sheet_is_pointed_out(tmp_path: Path) -> None:
         ({"course_heights": [0.1]}, "wall.course_heights: does not go with wall.drawing"),
     ],
 )
-def test_keys_of_a_drawing(wall: dict[str, Any], said: str, tmp_path: Path) -> None:
+def test_invalid_keys_of_a_drawing_are_refused(wall: dict[str, Any], said: str, tmp_path: Path) -> None:
     dxf(tmp_path / "wall.dxf", closed())
     with pytest.raises(SceneError) as refused:
         scene_from_dict(tables(**wall), folder=tmp_path)
@@ -181,14 +181,14 @@ def test_keys_of_a_drawing(wall: dict[str, Any], said: str, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("how", [{"length": 1.44, "height": 0.72}, {"courses": [[1.0]]}])
-def test_only_a_drawing_is_healed(how: dict[str, Any]) -> None:
+def test_heal_is_refused_without_a_drawing(how: dict[str, Any]) -> None:
     wall = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.1, "heal": 1e-3, **how}
     with pytest.raises(SceneError, match=r"wall\.heal: does not go with wall\.(length|courses); describe the wall"):
         scene_from_dict(tables() | {"wall": wall})
 
 
-def test_a_bed_that_is_curved_is_not_made_straight(tmp_path: Path) -> None:
-    """Courses in bond on a parabola: no blocks of four straight sides fit, and 0.2 mm do not make them."""
+def test_healing_refuses_to_straighten_a_curved_bed(tmp_path: Path) -> None:
+    """Courses in bond along a parabola: no quadrilateral blocks fit, and moves of 0.2 mm do not make them fit."""
 
     def bed(x: float) -> float:
         return 200 + (x - 1000) ** 2 * 7.5e-6
@@ -217,13 +217,13 @@ def vertices(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def without_x(found: dict[str, Any]) -> None:
-    """A corner without its x, in a mesh that has no usual one."""
+    """Remove x from a corner, in a mesh without a default x."""
     del vertices(found)["0"]["x"]
     del nodes(found)["0"]["block"]["data"]["default_vertex_attributes"]["x"]
 
 
 def slanted(found: dict[str, Any]) -> None:
-    """The wall turned in plan, so that it runs between the axes."""
+    """Turn the wall in plan, away from the coordinate axes."""
     for node in nodes(found).values():
         for vertex in node["block"]["data"]["vertex"].values():
             x, y = vertex["x"], vertex["y"]
@@ -231,7 +231,7 @@ def slanted(found: dict[str, Any]) -> None:
 
 
 def holed(found: dict[str, Any]) -> None:
-    """A frame of four prisms about a hole, as one mesh."""
+    """Replace a block by one mesh of four prisms around a hole."""
     parts = [mesh(o) for o in (box(0, 0, 3, 1), box(2, 1, 3, 2), box(0, 2, 3, 3), box(0, 1, 1, 2))]
     whole: dict[str, Any] = {"vertex": {}, "face": {}}
     for k, part in enumerate(parts):
@@ -296,7 +296,7 @@ def holed(found: dict[str, Any]) -> None:
         ),
     ],
 )
-def test_a_json_file_that_is_no_assembly_of_a_wall(text: str, said: str, tmp_path: Path) -> None:
+def test_invalid_json_assembly_is_refused(text: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "wall.json").write_text(text)
     with pytest.raises(SceneError) as refused:
         scene_of(tmp_path / "wall.json", units="m")
@@ -305,7 +305,7 @@ def test_a_json_file_that_is_no_assembly_of_a_wall(text: str, said: str, tmp_pat
     assert "\n" not in str(refused.value)
 
 
-def test_a_folder_is_no_assembly(tmp_path: Path) -> None:
+def test_folder_or_missing_file_as_assembly_is_refused(tmp_path: Path) -> None:
     (tmp_path / "wall.json").mkdir()
     with pytest.raises(SceneError, match="cannot be read as JSON: it is not a regular file"):
         scene_of(tmp_path / "wall.json", units="m")
@@ -321,7 +321,7 @@ def test_a_folder_is_no_assembly(tmp_path: Path) -> None:
         (b"", "is not a DXF file"),
     ],
 )
-def test_a_file_of_another_kind_is_called_so(head: bytes, said: str, tmp_path: Path) -> None:
+def test_other_file_formats_are_refused_by_name(head: bytes, said: str, tmp_path: Path) -> None:
     (tmp_path / "wall.dxf").write_bytes(head + bytes(200 * bool(head)))
     with pytest.raises(SceneError) as refused:
         scene_of(tmp_path / "wall.dxf")

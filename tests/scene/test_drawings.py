@@ -1,4 +1,4 @@
-"""A drawing is read as what it shows, however it was drawn."""
+"""Reading of DXF drawings: the same wall results however it was drawn."""
 
 import math
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from .drafting import BRICKS, COURSES, GROUND, Draw, Outline, box, closed, dxf, 
 
 
 def nearly_closed(_: Any, space: Any) -> None:
-    """The last corner repeats the first but for 6e-13 mm, as in published drawings."""
+    """The last corner repeats the first to within 6e-13 mm, as in published drawings."""
     for outline in BRICKS:
         space.add_lwpolyline([*outline, (outline[0][0] + 6e-13, outline[0][1])])
 
@@ -40,14 +40,14 @@ def shared(_: Any, space: Any) -> None:
 
 
 def halves(_: Any, space: Any) -> None:
-    """Two open polylines a block, in either sense."""
+    """Two open polylines per block, of opposite sense."""
     for a, b, c, d in BRICKS:
         space.add_lwpolyline([a, b, c])
         space.add_lwpolyline([a, d, c])
 
 
 def cut_outline(_: Any, space: Any) -> None:
-    """A closed outline of each course, cut by its head joints."""
+    """A closed outline of each course, with lines for its head joints."""
     for k, xs in enumerate(COURSES):
         space.add_lwpolyline(box(0, 100 * k, 400, 100 * (k + 1)), close=True)
         for x in xs[1:-1]:
@@ -83,7 +83,7 @@ WAYS: dict[str, Draw] = {
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_one_wall_drawn_in_every_way_bears_one_load(way: str, tmp_path: Path) -> None:
+def test_multiplier_does_not_depend_on_how_the_wall_is_drawn(way: str, tmp_path: Path) -> None:
     exact = scene_of(dxf(tmp_path / "wall.dxf", closed()))
     scene = scene_of(dxf(tmp_path / "other.dxf", WAYS[way]))
     assert len(scene.joints) == len(exact.joints) == 14
@@ -99,13 +99,13 @@ def test_one_wall_drawn_in_every_way_bears_one_load(way: str, tmp_path: Path) ->
         ("cut outlines", "joined into 7 outlines"),
     ],
 )
-def test_how_lines_were_read_is_said(way: str, said: str, tmp_path: Path) -> None:
+def test_note_says_how_lines_were_joined_into_outlines(way: str, said: str, tmp_path: Path) -> None:
     (note,) = scene_of(dxf(tmp_path / "wall.dxf", WAYS[way])).notes
     assert said in note
 
 
-def test_an_area_that_no_outline_goes_round_is_an_opening(tmp_path: Path) -> None:
-    """Four bricks round a hole, each with its own LINEs."""
+def test_area_without_an_outline_of_its_own_is_an_opening(tmp_path: Path) -> None:
+    """Four bricks around a hole, each with its own LINEs."""
     around = [box(0, 0, 100, 300), box(200, 0, 300, 300), box(100, 0, 200, 100), box(100, 200, 200, 300)]
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", own_lines(around)), "mm")
     assert len(drawing.blocks) == 4
@@ -113,15 +113,15 @@ def test_an_area_that_no_outline_goes_round_is_an_opening(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("again", [1, 4])
-def test_lines_that_were_drawn_twice_take_no_stone_away(again: int, tmp_path: Path) -> None:
-    """Twice is what two neighbours draw; nobody is beyond an outer line."""
+def test_duplicate_lines_do_not_remove_a_stone(again: int, tmp_path: Path) -> None:
+    """Neighbours may both draw their common line, but beyond a line on the outside there is no neighbour."""
     sides = [(0, 0, 100, 0), (100, 0, 100, 100), (100, 100, 0, 100), (0, 100, 0, 0)]
     twice = lines(*sides, *sides[:again])
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", twice, closed([box(200, 0, 300, 100)])), "mm")
     assert _areas(drawing.blocks) == pytest.approx([0.01, 0.01])
 
 
-def test_lines_that_cross_are_cut_where_they_do(tmp_path: Path) -> None:
+def test_crossing_lines_are_cut_at_their_intersection(tmp_path: Path) -> None:
     cross = lines(
         (0, 0, 200, 0), (200, 0, 200, 200), (200, 200, 0, 200), (0, 200, 0, 0), (0, 90, 200, 90), (70, 0, 70, 200)
     )
@@ -136,7 +136,7 @@ def _areas(outlines: list[Any]) -> list[float]:
 # --- layers, and what is left out ----------------------------------------------------------------------------------
 
 
-def test_everything_left_out_is_counted_by_type_and_layer(tmp_path: Path) -> None:
+def test_ignored_entities_are_counted_by_type_and_layer(tmp_path: Path) -> None:
     def more(document: Any, space: Any) -> None:
         document.layers.add("AXES").freeze()
         document.layers.add("GRID").off()
@@ -160,8 +160,8 @@ def test_everything_left_out_is_counted_by_type_and_layer(tmp_path: Path) -> Non
         assert part in note
 
 
-def test_frames_of_sheets_and_points_are_left_out_and_said(tmp_path: Path) -> None:
-    """A line that a command left where it began and ended is no open outline, and a polyline of one point no block."""
+def test_paper_space_and_zero_length_lines_are_ignored_with_a_note(tmp_path: Path) -> None:
+    """A line of zero length is no open outline, and a polyline of a single point is no block."""
 
     def more(document: Any, space: Any) -> None:
         closed([box(0, 0, 420, 297)])(document, document.layout("Layout1"))
@@ -179,8 +179,8 @@ def test_frames_of_sheets_and_points_are_left_out_and_said(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("version", ["R2000", "R2004", "R2007", "R2018"])
 @pytest.mark.parametrize("form", ["asc", "bin"])
-def test_layers_are_named_in_any_letters(version: str, form: str, tmp_path: Path) -> None:
-    """Files before 2007 have a code page, and write what it lacks by number; layers that are off are known by it."""
+def test_layer_names_in_any_alphabet(version: str, form: str, tmp_path: Path) -> None:
+    """DXF before 2007 has a code page and escapes other letters; names must still match to find hidden layers."""
     document = ezdxf.new(version)  # type: ignore[attr-defined]
     space = document.modelspace()
     document.layers.add("Оси").off()
@@ -193,14 +193,14 @@ def test_layers_are_named_in_any_letters(version: str, form: str, tmp_path: Path
     assert drawing.notes == ("left out: 1 LINE on layer Оси, which is off",)
 
 
-def test_a_corner_in_the_middle_of_a_side_is_none_even_if_it_is_drawn_first(tmp_path: Path) -> None:
+def test_first_corner_is_removed_if_it_lies_within_a_side(tmp_path: Path) -> None:
     stone = [(100, 300), (200, 300), (200, 400), (0, 400), (0, 300)]
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, stone])), "mm")
     assert sorted(map(tuple, drawing.blocks[7].round(9))) == [(0.0, 0.3), (0.0, 0.4), (0.2, 0.3), (0.2, 0.4)]
 
 
-def test_a_ground_however_large_neither_straightens_stones_nor_makes_slivers_of_them(tmp_path: Path) -> None:
-    """What is a corner, and what is a stone, is measured by stones: one leans out by a tenth of a millimetre."""
+def test_huge_ground_does_not_change_the_tolerances_of_stones(tmp_path: Path) -> None:
+    """Tolerances for corners and slivers scale with the stones: a corner 0.1 mm off a straight side must remain."""
     stone = [(0, 300), (200, 300), (200.1, 350), (200, 400), (0, 400)]
     ground = closed([box(-50_000, -100_000, 50_000, 0)], layer="ground")
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, stone]), ground, ground=False), "mm")
@@ -208,8 +208,8 @@ def test_a_ground_however_large_neither_straightens_stones_nor_makes_slivers_of_
     assert drawing.notes == ()
 
 
-def test_an_outline_too_thin_for_a_stone_is_pointed_out(tmp_path: Path) -> None:
-    """What two strokes a hundredth of a millimetre apart enclose makes contact anywhere a matter of 0.2 µm."""
+def test_sliver_is_reported_with_the_contact_tolerance(tmp_path: Path) -> None:
+    """A block 0.01 mm thin, between two nearby lines, reduces the contact tolerance of all blocks to 0.2 µm."""
     strip = closed([box(0, 300, 400, 300.01)])
     (note,) = read_drawing(dxf(tmp_path / "wall.dxf", closed(), strip), "mm").notes
     assert note == (
@@ -228,10 +228,10 @@ def test_an_outline_too_thin_for_a_stone_is_pointed_out(tmp_path: Path) -> None:
     ],
     ids=["out of a side", "into it", "along a head joint", "at its first corner"],
 )  # fmt: skip
-def test_a_spike_of_no_width_is_no_part_of_a_stone(
+def test_spikes_of_zero_width_are_removed(
     tip: tuple[int, int], spiked: Callable[[float], Outline], off: float, tmp_path: Path
 ) -> None:
-    """Shapes that were cut and joined have such spikes, which would make joints with stones that they pass."""
+    """Cutting and joining shapes leaves such spikes; they would make joints with the stones that they touch."""
     path = dxf(tmp_path / "wall.dxf", closed([spiked(off), *BRICKS[1:]]))
     scene, plain = scene_of(path), scene_of(dxf(tmp_path / "plain.dxf", closed()))
     assert np.sort(scene.blocks.vertices, axis=0) == pytest.approx(np.sort(plain.blocks.vertices, axis=0))
@@ -240,7 +240,7 @@ def test_a_spike_of_no_width_is_no_part_of_a_stone(
     assert f"spikes: an outline turns back on itself at {at} m; what has no width is left out" in scene.notes
 
 
-def test_what_is_on_layer_0_of_a_block_is_on_the_layer_of_its_insert(tmp_path: Path) -> None:
+def test_layer_0_inside_a_block_becomes_the_layer_of_its_insert(tmp_path: Path) -> None:
     def draw(document: Any, space: Any) -> None:
         block = document.blocks.new("BRICK")
         block.add_lwpolyline(box(0, 0, 200, 100), close=True)
@@ -251,7 +251,7 @@ def test_what_is_on_layer_0_of_a_block_is_on_the_layer_of_its_insert(tmp_path: P
 
 
 @pytest.mark.parametrize("name", ["ground", "Soil", "SUPPORT", "base", "Terrain"])
-def test_pieces_of_the_ground_are_on_a_layer_of_its_own(name: str, tmp_path: Path) -> None:
+def test_ground_pieces_are_found_by_layer_name(name: str, tmp_path: Path) -> None:
     """A lintel on two blocks on a stepped ground of two pieces; one block lies lower than the ground's higher piece."""
     pieces = [box(-100, -200, 100, -100), [(200, -50), (700, -50), (700, 40), (600, 40), (600, 0), (200, 0)]]
     blocks = [box(0, -100, 100, 100), box(500, 0, 600, 100), box(0, 100, 600, 200)]
@@ -264,8 +264,8 @@ def test_pieces_of_the_ground_are_on_a_layer_of_its_own(name: str, tmp_path: Pat
     assert multiplier(scene) > 0
 
 
-def test_a_plinth_on_a_layer_that_means_the_ground_is_told(tmp_path: Path) -> None:
-    """It is held, and the wall stands on it: what no one would see in an answer."""
+def test_plinth_on_a_ground_layer_is_reported(tmp_path: Path) -> None:
+    """It becomes a fixed support, which no result would reveal."""
     plinth, soil = closed([box(-50, -60, 450, 0)], "Base"), closed([box(-500, -90, 900, -60)], "ground")
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(BRICKS), plinth, soil, ground=False), "mm")
     assert len(drawing.grounds) == 2
@@ -274,20 +274,20 @@ def test_a_plinth_on_a_layer_that_means_the_ground_is_told(tmp_path: Path) -> No
     assert not any(note.startswith("ground") for note in plain.notes)
 
 
-def test_without_such_a_layer_the_lowest_outline_is_the_ground_and_is_said_to_be(tmp_path: Path) -> None:
+def test_lowest_outline_is_the_ground_without_a_ground_layer(tmp_path: Path) -> None:
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, box(-500, -50, 900, 0)]), ground=False), "mm")
     assert (len(drawing.blocks), len(drawing.grounds)) == (7, 1)
     assert drawing.notes == ("ground: no layer is named ground, so it is the lowest outline, at (0.2, -0.025)",)
 
 
-def test_of_several_outlines_that_lie_lowest_none_is_taken_for_the_ground(tmp_path: Path) -> None:
-    """Three stones side by side, drawn without ground: one would be held, and the others hang in the air."""
+def test_several_equally_low_outlines_are_refused_as_ground(tmp_path: Path) -> None:
+    """Three stones side by side, drawn without ground: one would be fixed and the others float."""
     path = dxf(tmp_path / "wall.dxf", closed([box(x, 0, x + 300, 200) for x in (0, 300, 600)]), ground=False)
     with pytest.raises(SceneError, match="has no outline on a layer named ground, and 3 outlines lie as low"):
         read_drawing(path, "mm")
 
 
-def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:
+def test_units_that_differ_from_the_header_are_reported(tmp_path: Path) -> None:
     def header(document: Any, _: Any) -> None:
         document.header["$INSUNITS"] = 5
 
@@ -296,10 +296,10 @@ def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("state", "seen"), [("on", ["0", "STONE"]), ("off", ["STONE"]), ("freeze", [])])
-def test_what_an_insert_holds_is_seen_where_its_layer_is_off_but_not_where_it_is_frozen(
+def test_contents_of_an_insert_are_read_if_its_layer_is_off_but_not_if_frozen(
     state: str, seen: list[str], tmp_path: Path
 ) -> None:
-    """As CAD programs show it; what is on layer 0 in it is on the layer of the INSERT, and off with that."""
+    """As CAD programs show it; layer 0 inside the block is the INSERT's layer, and hidden with it."""
 
     def insert(document: Any, space: Any) -> None:
         getattr(document.layers.add("INSERTS"), state)()
@@ -313,7 +313,7 @@ def test_what_an_insert_holds_is_seen_where_its_layer_is_off_but_not_where_it_is
     assert sorted(_areas(drawing.blocks[7:])) == pytest.approx(sorted(areas[layer] for layer in seen))
 
 
-def test_what_is_invisible_is_no_stone_and_said_to_be_left_out(tmp_path: Path) -> None:
+def test_invisible_outlines_are_left_out_with_a_note(tmp_path: Path) -> None:
     def hidden(_: Any, space: Any) -> None:
         space.add_lwpolyline(box(0, 300, 100, 400), close=True, dxfattribs={"invisible": 1})
 
@@ -325,10 +325,8 @@ def test_what_is_invisible_is_no_stone_and_said_to_be_left_out(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("code", "unit", "metres"), [(1, "in", 0.0254), (2, "ft", 0.3048), (4, "mm", 1e-3), (5, "cm", 0.01), (6, "m", 1.0)]
 )
-def test_a_header_with_the_units_of_the_wall_is_nothing_to_say(
-    code: int, unit: str, metres: float, tmp_path: Path
-) -> None:
-    """By AutoCAD's codes of $INSUNITS; a wall is as many metres long as its drawing units are."""
+def test_units_that_agree_with_the_header_need_no_note(code: int, unit: str, metres: float, tmp_path: Path) -> None:
+    """With AutoCAD's codes of $INSUNITS; lengths are converted from drawing units to metres."""
 
     def units(document: Any, _: Any) -> None:
         document.header["$INSUNITS"] = code
@@ -338,8 +336,8 @@ def test_a_header_with_the_units_of_the_wall_is_nothing_to_say(
     assert np.ptp(np.vstack(drawing.blocks), axis=0) == pytest.approx(np.array([400.0, 300.0]) * metres)
 
 
-def test_a_drawing_without_a_header_is_not_said_to_have_one(tmp_path: Path) -> None:
-    """What scripts write: entities and nothing else."""
+def test_drawing_without_a_header_needs_no_units_note(tmp_path: Path) -> None:
+    """As scripts write DXF: an ENTITIES section and nothing else."""
 
     def polyline(outline: Outline, layer: str) -> str:
         corners = "".join(f"0\nVERTEX\n8\n{layer}\n10\n{x}\n20\n{y}\n" for x, y in outline)
@@ -353,8 +351,8 @@ def test_a_drawing_without_a_header_is_not_said_to_have_one(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("stones", [closed, own_lines])
-def test_what_lies_far_off_leaves_stones_their_corners(stones: Any, tmp_path: Path) -> None:
-    """A wall on a map, and a sample of the ground's hatching at the origin: ends half a metre apart were one."""
+def test_distant_entities_do_not_merge_corners_of_stones(stones: Any, tmp_path: Path) -> None:
+    """A wall at map coordinates and a hatching sample at the origin: line ends half a metre apart once merged."""
     there = [[(x + 512_345e3, y + 5_412_345e3) for x, y in outline] for outline in [*BRICKS, GROUND]]
     ground, sample = closed(there[-1:], "ground"), closed([box(0, 0, 50, 20)], "ground")
     scene = scene_of(dxf(tmp_path / "wall.dxf", stones(there[:-1]), ground, sample, ground=False))
@@ -362,8 +360,8 @@ def test_what_lies_far_off_leaves_stones_their_corners(stones: Any, tmp_path: Pa
     assert len(scene.joints) == 14
 
 
-def test_a_block_below_what_is_called_the_ground_is_pointed_out(tmp_path: Path) -> None:
-    """A first course on a layer named base, and soil on one whose name says nothing here."""
+def test_block_below_the_ground_layer_is_reported(tmp_path: Path) -> None:
+    """A first course on a layer named base, and soil on a layer whose name does not mark it as ground."""
     plinth, soil = closed(BRICKS[:2], "Base"), closed([GROUND], "Soil model")
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(BRICKS[2:]), plinth, soil, ground=False), "mm")
     assert drawing.notes == ("ground: layer Base; block 5, on layer Soil model, lies lower",)
@@ -408,7 +406,7 @@ def of_two_arcs(_: Any, space: Any) -> None:
 
 
 def mirrored(document: Any, space: Any) -> None:
-    """One half of the polylines, and its mirror image by an INSERT; the keystone is in the middle."""
+    """One half of the polylines, its mirror image by an INSERT, and the keystone in the middle."""
     half = document.blocks.new("HALF")
     for k, (a, b) in enumerate(pairwise(np.linspace(0, math.pi, STONES + 1))):
         corners = [at(INNER, a), at(OUTER, a), at(OUTER, b), at(INNER, b)]
@@ -430,14 +428,14 @@ def arch_load(draw: Draw, folder: Path) -> float:
 
 
 @pytest.mark.parametrize("draw", [of_arcs, of_two_arcs, mirrored])
-def test_one_arch_drawn_in_every_way_bears_one_load(draw: Draw, tmp_path: Path) -> None:
+def test_multiplier_of_an_arch_does_not_depend_on_how_it_is_drawn(draw: Draw, tmp_path: Path) -> None:
     assert arch_load(draw, tmp_path) == pytest.approx(arch_load(bulged, tmp_path), rel=1e-9)
 
 
-def test_the_load_of_an_arch_converges_with_the_square_of_its_chords(
+def test_arch_multiplier_converges_quadratically_in_the_chord_length(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A quarter of the sagitta, and so half of the chord, leaves a quarter of the error."""
+    """A quarter of the sagitta, i.e. half the chord length, leaves a quarter of the error."""
     loads = []
     for sagitta in (4e-3, 1e-3, 2.5e-4, 1e-6):
         monkeypatch.setattr(curves, "SAGITTA", sagitta)
@@ -446,7 +444,7 @@ def test_the_load_of_an_arch_converges_with_the_square_of_its_chords(
     assert errors[:-1] / errors[1:] == pytest.approx(4, rel=0.35)
 
 
-def test_chords_leave_their_arcs_by_no_more_than_is_said(tmp_path: Path) -> None:
+def test_reported_sagitta_is_the_largest_deviation_of_the_chords(tmp_path: Path) -> None:
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", bulged, SPRINGINGS, ground=False), "mm")
     (note,) = drawing.notes
     assert "arcs: 18 are cut into" in note
@@ -459,8 +457,8 @@ def test_chords_leave_their_arcs_by_no_more_than_is_said(tmp_path: Path) -> None
     assert said <= curves.SAGITTA * OUTER
 
 
-def test_stones_and_a_filling_along_one_arc_touch_all_along(tmp_path: Path) -> None:
-    """The filling's one arc runs over the stones' nine, in the other sense."""
+def test_filling_touches_the_voussoirs_along_the_whole_arc(tmp_path: Path) -> None:
+    """The filling has one arc along the stones' nine arcs, of opposite sense."""
 
     def filling(_: Any, space: Any) -> None:
         top = [(-1500, 0, 0), (-1200, 0, -1), (1200, 0, 0), (1500, 0, 0), (1500, 1500, 0), (-1500, 1500, 0)]
@@ -479,7 +477,7 @@ def test_stones_and_a_filling_along_one_arc_touch_all_along(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("kind", ["circle", "bulges", "ellipse", "spline"])
-def test_round_blocks_are_cut_to_their_area(kind: str, tmp_path: Path) -> None:
+def test_polygons_of_round_blocks_keep_their_area(kind: str, tmp_path: Path) -> None:
     def draw(document: Any, space: Any) -> None:
         if kind == "circle":
             space.add_circle((200, 150), 100)
@@ -498,8 +496,8 @@ def test_round_blocks_are_cut_to_their_area(kind: str, tmp_path: Path) -> None:
     assert _areas([block])[0] == pytest.approx(math.pi * 1e-2, rel=3e-3)
 
 
-def test_an_arc_runs_counter_clockwise_from_its_start_past_zero(tmp_path: Path) -> None:
-    """The right half of a disc; mirrored, where its axis points away, the left one."""
+def test_arc_across_angle_zero_and_its_mirror_image(tmp_path: Path) -> None:
+    """The right half of a disc; with its extrusion away from the viewer, mirrored, the left half."""
 
     def half(_: Any, space: Any) -> None:
         space.add_arc((1000, 600), 200, 270, 90)
@@ -516,8 +514,8 @@ def test_an_arc_runs_counter_clockwise_from_its_start_past_zero(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("kind", ["add_lwpolyline", "add_polyline2d"])
-def test_a_polyline_whose_axis_points_away_is_seen_from_the_other_side(kind: str, tmp_path: Path) -> None:
-    """As a mirrored block leaves it: x of its corners counts the other way."""
+def test_polyline_with_negative_extrusion_is_mirrored(kind: str, tmp_path: Path) -> None:
+    """As left by a mirrored block: x of the corners has the opposite sign."""
 
     def mirrored(_: Any, space: Any) -> None:
         getattr(space, kind)(box(600, 300, 700, 400), close=True, dxfattribs={"extrusion": (0, 0, -1)})
@@ -527,8 +525,8 @@ def test_a_polyline_whose_axis_points_away_is_seen_from_the_other_side(kind: str
     assert [*found.min(axis=0), *found.max(axis=0)] == pytest.approx([-0.7, 0.3, -0.6, 0.4])
 
 
-def test_corners_of_a_frame_are_none_of_its_curve(tmp_path: Path) -> None:
-    """An old polyline that was fitted to a curve holds the corners of its control polygon as well."""
+def test_control_points_of_a_fitted_polyline_are_ignored(tmp_path: Path) -> None:
+    """An old polyline that was fitted to a curve also stores the vertices of its control polygon."""
 
     def fitted(_: Any, space: Any) -> None:
         curve, frame = box(0, 300, 100, 400), [(50, 350), (500, 900)]
@@ -541,8 +539,8 @@ def test_corners_of_a_frame_are_none_of_its_curve(tmp_path: Path) -> None:
     assert len(drawing.blocks[7]) == 4
 
 
-def test_two_blocks_along_one_spline_touch(tmp_path: Path) -> None:
-    """One draws the spline as the other does backwards."""
+def test_blocks_on_both_sides_of_a_spline_touch(tmp_path: Path) -> None:
+    """The two blocks draw the spline in opposite directions."""
     nodes = [(0, 100, 0), (60, 130, 0), (140, 80, 0), (200, 100, 0)]
 
     def draw(_: Any, space: Any) -> None:

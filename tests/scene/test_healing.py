@@ -1,4 +1,4 @@
-"""Gaps and overlaps of a drawing: closed where that is asked for, and said where it is not."""
+"""Gaps and overlaps of a drawing: closed with `wall.heal`, reported without it."""
 
 import math
 from itertools import pairwise
@@ -22,7 +22,7 @@ def metres(outlines: list[Outline]) -> list[Array]:
 
 
 def sloppy(outlines: list[Array], reach: float, seed: int) -> list[Array]:
-    """Corners moved at random by less than 0.35 of a reach each way, so that any two that met are within it."""
+    """Outlines with corners moved randomly by up to 0.35 `reach` per axis; corners that met stay within `reach`."""
     rng = np.random.default_rng(seed)
     return [outline + rng.uniform(-0.35, 0.35, outline.shape) * reach for outline in outlines]
 
@@ -33,7 +33,7 @@ def touching(outlines: list[Array]) -> int:
 
 @settings(max_examples=20)
 @given(seed=st.integers(0, 10**6), reach=st.sampled_from([1e-4, 1e-3, 4e-3]))
-def test_healed_blocks_touch_wherever_they_were_meant_to(seed: int, reach: float) -> None:
+def test_healing_restores_all_joints(seed: int, reach: float) -> None:
     drawn = sloppy(metres([*BRICKS, GROUND]), reach, seed)
     healed, note = heal(drawn, reach)
     assert touching(healed) == 14
@@ -42,15 +42,15 @@ def test_healed_blocks_touch_wherever_they_were_meant_to(seed: int, reach: float
     assert f"by at most {moved:.2g} m" in note
 
 
-def test_what_touches_already_stays_where_it_is() -> None:
+def test_healing_does_not_move_touching_blocks() -> None:
     drawn = metres([*BRICKS, GROUND])
     healed, note = heal(drawn, 1e-3)
     assert all((a == b).all() for a, b in zip(drawn, healed, strict=True))
     assert note == "heal: nothing to close"
 
 
-def test_a_wall_on_a_map_is_healed_as_one_at_the_origin_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In hardly more steps, to a nanometre, which is what doubles tell there; all of them were taken to close that."""
+def test_healing_does_not_depend_on_position(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At map coordinates doubles resolve about a nanometre; healing must not use all iterations to close the rest."""
     step, steps = healing._step, 0
 
     def counted(*given: Any) -> Array:
@@ -69,8 +69,8 @@ def test_a_wall_on_a_map_is_healed_as_one_at_the_origin_is(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("reach", [1e-3, 1e-4])
-def test_a_healed_wall_bears_the_load_of_the_exact_one(reach: float, tmp_path: Path) -> None:
-    """To the share that the gaps are of the blocks: the load is a continuous function of the shape."""
+def test_healed_wall_has_the_multiplier_of_the_exact_wall(reach: float, tmp_path: Path) -> None:
+    """To a relative error of gap over block size, because the multiplier depends continuously on the shape."""
     exact = multiplier(scene_of(dxf(tmp_path / "wall.dxf", closed())))
     for seed in range(4):
         drawn = [1e3 * o for o in sloppy(metres(BRICKS), reach, seed)]
@@ -79,8 +79,8 @@ def test_a_healed_wall_bears_the_load_of_the_exact_one(reach: float, tmp_path: P
         assert multiplier(scene) == pytest.approx(exact, rel=reach / 0.1)
 
 
-def test_parallel_gaps_heal_to_the_exact_load(tmp_path: Path) -> None:
-    """Bricks drawn 0.4 mm too small all round leave 0.8 mm of gap, and the wall its own shape but for its outline."""
+def test_parallel_gaps_heal_to_the_exact_multiplier(tmp_path: Path) -> None:
+    """Bricks drawn 0.4 mm too small on all sides leave gaps of 0.8 mm; healed, only the wall's outline differs."""
     exact = multiplier(scene_of(dxf(tmp_path / "wall.dxf", closed())))
     small = [
         [
@@ -94,8 +94,8 @@ def test_parallel_gaps_heal_to_the_exact_load(tmp_path: Path) -> None:
     assert multiplier(scene) == pytest.approx(exact, rel=3e-3)
 
 
-def test_a_reach_that_takes_a_short_side_away_is_refused(tmp_path: Path) -> None:
-    """The ground has a step of 3 mm, whose ends both are near a block's lower corner."""
+def test_heal_longer_than_a_short_side_is_refused(tmp_path: Path) -> None:
+    """The ground has a step of 3 mm, both ends of which are near a block's lower corner."""
     stones: list[Outline] = [
         [(0, -3), (400, -3), (400, 200), (0, 200)],
         [(400, 0), (800, 0), (800, 200), (400, 200)],
@@ -107,15 +107,15 @@ def test_a_reach_that_takes_a_short_side_away_is_refused(tmp_path: Path) -> None
         scene_of(path, heal=4e-3)
 
 
-def test_a_reach_is_at_most_a_tenth_of_the_smallest_side() -> None:
-    """That of the ground, which is 50 mm deep."""
+def test_heal_is_at_most_a_tenth_of_the_smallest_side() -> None:
+    """Here that of the ground, which is 50 mm deep."""
     drawn = metres([*BRICKS, GROUND])
     heal(drawn, 0.0049)
     with pytest.raises(SceneError, match="must be at most a tenth of the smallest block's smaller side"):
         heal(drawn, 0.0051)
 
 
-def test_overlaps_are_healed_too(tmp_path: Path) -> None:
+def test_overlaps_are_healed(tmp_path: Path) -> None:
     outlines: list[Outline] = [
         [(0, -0.3), (200, -0.3), (200, 100.4), (0, 100.4)],
         [(0, 100), (200, 100), (200, 200), (0, 200)],
@@ -127,10 +127,10 @@ def test_overlaps_are_healed_too(tmp_path: Path) -> None:
     assert "gaps and overlaps of up to 0.0004 m" in scene.notes[-1]
 
 
-def test_a_corner_over_an_edge_and_that_edge_meet_where_the_squares_of_their_ways_are_least() -> None:
-    """At a quarter of it: g = c + 3/4 a + 1/4 b for the corner's way down and those of the edge's ends up.
+def test_corner_and_edge_meet_with_the_least_squares_of_displacements() -> None:
+    """The corner is above the edge's quarter point: g = c + 3/4 a + 1/4 b, with c down and a, b of the edge's ends up.
 
-    So c = g / (1 + 9/16 + 1/16), a = 3/4 c and b = 1/4 c; nothing else moves.
+    Least squares give c = g / (1 + 9/16 + 1/16), a = 3/4 c and b = 1/4 c; nothing else moves.
     """
     gap = 1e-3
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -141,7 +141,7 @@ def test_a_corner_over_an_edge_and_that_edge_meet_where_the_squares_of_their_way
     assert healed[1] - wedge == pytest.approx(np.array([[0, -down], [0, 0], [0, 0]]), abs=2e-6)
 
 
-def test_two_corners_meet_in_their_middle() -> None:
+def test_two_corners_meet_halfway() -> None:
     left = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     right = np.array([[1.002, 0.0], [2.0, 0.0], [2.0, 1.0], [1.002, 1.0]])
     healed, note = heal([left, right], 3e-3)
@@ -160,7 +160,7 @@ def test_a_joint_along_many_blocks_heals_to_one_straight_line() -> None:
     assert np.abs(bed[:, 1] - np.polyval(slope, bed[:, 0])).max() < 1e-9
 
 
-def test_stones_of_an_arch_heal() -> None:
+def test_healing_of_an_arch() -> None:
     stones = []
     for a, b in pairwise(np.linspace(0, math.pi, 12)):
         stones.append(np.array([[r * math.cos(t), r * math.sin(t)] for r, t in ((2, a), (2.4, a), (2.4, b), (2, b))]))
@@ -168,7 +168,7 @@ def test_stones_of_an_arch_heal() -> None:
     assert touching(healed) == 10
 
 
-def test_a_gap_that_takes_a_joint_away_is_said_and_what_would_close_it(tmp_path: Path) -> None:
+def test_gap_without_a_joint_is_reported_with_the_heal_that_closes_it(tmp_path: Path) -> None:
     outlines: list[Outline] = [*BRICKS[:5], *[[(x, y + 0.5) for x, y in o] for o in BRICKS[5:]]]
     path = dxf(tmp_path / "wall.dxf", closed(outlines))
     (note,) = read_drawing(path, "mm").notes
@@ -180,8 +180,8 @@ def test_a_gap_that_takes_a_joint_away_is_said_and_what_would_close_it(tmp_path:
     assert read_drawing(path, "mm", heal=2e-4).notes == ("heal: nothing to close", note)
 
 
-def test_a_gap_that_healing_leaves_open_is_not_said_to_be_closed_by_less_of_it(tmp_path: Path) -> None:
-    """A side of 0.2 mm, beyond the end of the edge that it is to lie on; of 4 mm it was said that 0.7 mm would do."""
+def test_gap_left_open_by_healing_gets_no_smaller_heal_proposed(tmp_path: Path) -> None:
+    """A side of 0.2 mm beyond the end of the edge it should lie on; after heal = 4 mm the note once proposed 0.7 mm."""
     lower = [(999.3, 397.2), (603.0, 604.3), (498.3, 360.1), (556.2, 0.0), (999.5, 0.0), (999.5, 397.3)]
     upper = [(999.4, 398.4), (999.4, 737.7), (606.9, 737.8), (603.3, 605.4)]
     path = dxf(tmp_path / "wall.dxf", closed([lower, upper, [(0, -300), (1500, -300), (1500, 0), (0, 0)]]))
@@ -190,21 +190,21 @@ def test_a_gap_that_healing_leaves_open_is_not_said_to_be_closed_by_less_of_it(t
     assert note.endswith("leaves no joint there; wall.heal = 0.004 leaves it open; draw the corners there anew")
 
 
-def test_a_wide_gap_is_meant() -> None:
+def test_wide_gaps_are_not_reported() -> None:
     apart = [[(x, y + (40 if k >= 5 else 0)) for x, y in o] for k, o in enumerate(BRICKS)]
     assert missed_joints(metres([*BRICKS, GROUND])) == missed_joints(metres([*apart, GROUND])) == ""
 
 
-def test_a_gap_is_wide_or_narrow_beside_the_smaller_of_two_blocks() -> None:
-    """Bricks 3 mm above a ground of a hundred metres: for that it would be nothing. Half a millimetre is seen."""
+def test_gap_width_is_judged_by_the_smaller_block() -> None:
+    """3 mm between bricks and a ground of 100 m is wide, though negligible for the ground; 0.5 mm is reported."""
     ground = box(-50_000.0, -100_000.0, 50_000.0, 0.0)
     for lifted, seen in ((3.0, False), (0.5, True)):
         bricks = [[(x, y + lifted) for x, y in brick] for brick in BRICKS]
         assert bool(missed_joints(metres([*bricks, ground]))) == seen
 
 
-def test_of_several_gaps_the_widest_is_told() -> None:
-    """0.3 mm under the middle course and 0.6 mm over it; what is proposed closes both."""
+def test_widest_of_several_gaps_is_reported() -> None:
+    """0.3 mm below the middle course and 0.6 mm above it; the proposed `heal` closes both."""
     lifted = [[(x, y + (0 if k < 2 else 0.3 if k < 5 else 0.9)) for x, y in brick] for k, brick in enumerate(BRICKS)]
     note = missed_joints(metres([*lifted, GROUND]))
     assert note.startswith("a gap of 0.0006 m between block 2")

@@ -1,4 +1,4 @@
-"""Motions of the ground: what records and pulses come to, and which are refused, and how."""
+"""Ground motions: values of records and pulses, and messages about invalid ones."""
 
 import os
 from pathlib import Path
@@ -31,11 +31,11 @@ def of(history: Any, folder: Path = Path()) -> History:
     return read
 
 
-# --- what they come to ---------------------------------------------------------------------------------------
+# --- values of records and pulses ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("kind", "span"), [("sine", 1.0), ("half-sine", 0.5), ("ricker", 3.0), ("ramp", 1.0)])
-def test_the_velocity_of_a_pulse_is_the_integral_of_its_acceleration(kind: str, span: float) -> None:
+def test_velocity_of_a_pulse_is_the_integral_of_its_acceleration(kind: str, span: float) -> None:
     history = of({"pulse": {**SINE, "kind": kind}, "quantity": "acceleration"})
     assert history.duration == pytest.approx(0.5 * span)
     assert np.hypot(*history.peak) == pytest.approx(2.0, rel=1e-5)
@@ -55,7 +55,7 @@ def test_the_velocity_of_a_pulse_is_the_integral_of_its_acceleration(kind: str, 
 
 @pytest.mark.parametrize(("quantity", "order"), [("acceleration", 0), ("velocity", 1), ("displacement", 2)])
 def test_a_record_of_any_quantity_has_the_same_velocity(quantity: str, order: int) -> None:
-    """Of x = A sin² ω t, finely sampled."""
+    """For x = A sin² ω t, finely sampled."""
     time = np.linspace(0, 1, 2001)
     w = np.pi
     motions = (2 * w**2 * np.cos(2 * w * time), w * np.sin(2 * w * time), np.sin(w * time) ** 2)
@@ -77,13 +77,13 @@ def test_units_and_scale(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("names", ["time [s],acceleration [m/s2]", "t,a1", '"time";"x 2"', "T a_x"])
-def test_a_first_row_that_names_the_columns_may_have_digits(names: str, tmp_path: Path) -> None:
+def test_column_names_may_contain_digits(names: str, tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_text(f"{names}\n{ROWS}")
     assert len(read_record(tmp_path / "record.csv", "file").time) == ROWS.count("\n")
 
 
-def test_the_ground_is_at_rest_before_its_record_and_keeps_what_it_came_to() -> None:
-    """Its velocity jumps where a record begins with one; it stops where its displacements end."""
+def test_velocity_before_and_after_a_record() -> None:
+    """At rest before; a velocity record may begin with a jump and keeps its last value, displacements end at rest."""
     time = np.array([0.0, 1.0, 2.0])
     moving = History(time, np.array([[0.5, 0.0], [0.7, 0.0], [0.6, 0.0]]), "velocity")
     displaced = History(time, np.array([[0.0, 0.0], [1.0, 0.0], [2.5, 0.0]]), "displacement")
@@ -95,8 +95,8 @@ def test_the_ground_is_at_rest_before_its_record_and_keeps_what_it_came_to() -> 
         assert history.note(2.0).endswith(f"g, and has {2 * first:.4g} m/s at once as the record begins")
 
 
-def test_samples_are_gone_through_once_and_not_at_each_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A motion asks every few steps how finely its record is sampled: of a long one that took longer than the wall."""
+def test_record_resolution_is_computed_only_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is needed every few time steps; without a cache it took longer than the wall for long records."""
     history = History(np.array([0.0, 0.01, 0.02, 0.03]), np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 0.0]]))
     plain, gone_through = np.diff, 0
 
@@ -110,8 +110,8 @@ def test_samples_are_gone_through_once_and_not_at_each_step(monkeypatch: pytest.
     assert gone_through == 1
 
 
-def test_a_ramp_stays_on_whatever_it_is_of() -> None:
-    """An acceleration goes on; a ground that has come to its velocity is accelerated no more."""
+def test_ramp_keeps_its_final_value() -> None:
+    """A ramp of acceleration stays at its amplitude; after a ramp of velocity the acceleration is zero."""
     of_velocity = of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "velocity"})
     assert of_velocity.velocity(np.array([0.5, 9.0]))[:, 0] == pytest.approx(2.0)
     assert of_velocity.acceleration(0.6)[0] == 0
@@ -120,8 +120,8 @@ def test_a_ramp_stays_on_whatever_it_is_of() -> None:
     assert in_g.acceleration(0.6)[0] == pytest.approx(2 * STANDARD_GRAVITY)
 
 
-def test_a_record_that_begins_late_is_counted_from_its_first_sample() -> None:
-    """As one that begins at 0, and before it there is no motion; its steps are halved where they are shortest."""
+def test_time_of_a_record_starts_at_its_first_sample() -> None:
+    """A late start is equivalent to a start at 0, with no motion before; the resolution is half the shortest step."""
     time, values = np.array([0.0, 0.1, 0.4, 0.6]), np.array([[1.0, 0.0], [2.0, 0.0], [-1.0, 0.0], [1.0, 0.0]])
     first, late = History(time, values), History(time + 30.0, values)
     for moment in (-0.1, 0.0, 0.05, 0.25, 0.7):
@@ -132,8 +132,8 @@ def test_a_record_that_begins_late_is_counted_from_its_first_sample() -> None:
 
 
 @pytest.mark.parametrize("multiplier", [1.5, -1.5])
-def test_the_peak_of_a_motion_is_where_both_of_its_parts_together_are_largest(multiplier: float) -> None:
-    """3 m/s² aside and 4 m/s² down come to 5 m/s²; turned round, λ < 0, to as much."""
+def test_peak_acceleration_is_the_largest_vector_norm(multiplier: float) -> None:
+    """3 m/s² sideways and 4 m/s² down are 5 m/s² in total; the same with the sign reversed (λ < 0)."""
     values = np.array([[0.0, 0.0], [4.5, 0.0], [3.0, -4.0], [0.0, 0.0]])
     history = History(np.arange(4.0), values)
     assert history.peak == pytest.approx([3.0, -4.0])
@@ -141,14 +141,14 @@ def test_the_peak_of_a_motion_is_where_both_of_its_parts_together_are_largest(mu
 
 
 @pytest.mark.parametrize("kind", ["sine", "ramp"])
-def test_the_mean_of_a_pulse_is_taken_over_a_two_hundredth_of_its_period(kind: str) -> None:
-    """However many samples it is drawn with: of a ramp there are two."""
+def test_resolution_of_a_pulse_is_a_two_hundredth_of_its_period(kind: str) -> None:
+    """Independent of its number of samples; a ramp has only two."""
     assert of({"pulse": {**SINE, "kind": kind}, "quantity": "acceleration"}).resolution == pytest.approx(0.5 / 200)
 
 
 @pytest.mark.parametrize("part", [";", "\t", " ", " ; "])
-def test_where_other_marks_part_the_columns_commas_are_decimal(part: str, tmp_path: Path) -> None:
-    """A record with whole seconds too, whose one comma a row made a third column of a second one."""
+def test_commas_are_decimal_marks_if_columns_have_another_separator(part: str, tmp_path: Path) -> None:
+    """Also with times in whole seconds, where the single comma of a row was once taken for a column separator."""
     for time in (["0,00", "0,01", "0,02"], ["0", "1", "2"]):
         rows = (part.join(row) for row in zip(time, ("0", "-2,5", "1,5e-1"), strict=True))
         (tmp_path / "record.csv").write_text(f"t{part}a\n" + "\n".join(rows))
@@ -159,7 +159,7 @@ def test_where_other_marks_part_the_columns_commas_are_decimal(part: str, tmp_pa
 
 @pytest.mark.parametrize("head", ["TIME HISTORY IN UNITS OF", "TIME HISTORY  IN UNITS OF", "TIME SERIES IN UNITS OF"])
 @pytest.mark.parametrize("after", ["", ". FILTER POINTS: HP=0.1 Hz   LP=40.0 Hz", ", 230"])
-def test_heads_of_all_databases_of_peer(head: str, after: str, tmp_path: Path) -> None:
+def test_headers_of_all_peer_databases(head: str, after: str, tmp_path: Path) -> None:
     (tmp_path / "el-centro.AT2").write_text(PEER.replace("TIME SERIES IN UNITS OF G", f"{head} G{after}"))
     assert read_record(tmp_path / "el-centro.AT2", "file").quantity == "g"
 
@@ -174,10 +174,10 @@ def test_heads_of_all_databases_of_peer(head: str, after: str, tmp_path: Path) -
         ("dt2", "DISPLACEMENT TIME HISTORY IN UNITS OF CM.", "displacement", 0.01),
     ],
 )
-def test_records_of_peer_are_in_their_own_units(
+def test_peer_records_are_converted_from_their_units(
     end: str, unit: str, quantity: str, metres: float, tmp_path: Path
 ) -> None:
-    """With exponents as Fortran writes them too."""
+    """Values may have Fortran exponents (1.D-1)."""
     text = PEER.replace("ACCELERATION TIME SERIES IN UNITS OF G", unit).replace("1.E-1", "1.D-1")
     (tmp_path / f"record.{end}").write_text(text)
     record = read_record(tmp_path / f"record.{end}", "file")
@@ -187,7 +187,7 @@ def test_records_of_peer_are_in_their_own_units(
     assert record.time == pytest.approx(0.005 * np.arange(7))
 
 
-def test_an_older_head_and_blanks(tmp_path: Path) -> None:
+def test_older_peer_header_and_blank_separated_columns(tmp_path: Path) -> None:
     old = PEER.replace("NPTS=  7, DT=   .0050 SEC,", "    7   .0050   NPTS, DT")
     (tmp_path / "old.vt2").write_text(old.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S"))
     record = read_record(tmp_path / "old.vt2", "file")
@@ -197,13 +197,13 @@ def test_an_older_head_and_blanks(tmp_path: Path) -> None:
     assert read_record(tmp_path / "blank.txt", "file").values[:, 0].tolist() == [0.01, -0.02]
 
 
-def test_a_pulse_has_the_length_of_its_kind() -> None:
+def test_duration_of_each_kind_of_pulse() -> None:
     assert [pulse(kind, 1.0, 2.0)[0][-1] for kind in ("sine", "half-sine", "ricker", "ramp")] == [2.0, 1.0, 6.0, 2.0]
 
 
 @pytest.mark.parametrize("name", [name for name, model in MODELS.items() if not model.respond])
-def test_models_without_time_refuse_it_by_name(name: str) -> None:
-    with pytest.raises(SceneError, match=f"load.history: is not taken by model {name}"):
+def test_models_without_time_refuse_a_history(name: str) -> None:
+    with pytest.raises(SceneError, match=f"load.history: is not supported by model {name}"):
         run_model(name, scene(PULSE))
 
 
@@ -279,8 +279,8 @@ REFUSED: list[tuple[Any, str]] = [
 
 
 @pytest.mark.parametrize(("given", "said"), REFUSED, ids=range(len(REFUSED)))
-def test_a_history_that_is_none(given: Any, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """One line with the file's name and the number of its line; exit code 2, nothing written."""
+def test_invalid_history_is_refused(given: Any, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One-line message with the file name and line number; exit code 2, nothing written."""
     history, text = given if isinstance(given, tuple) else (given, None)
     if text is not None:
         (tmp_path / history["file"]).write_text(text)
@@ -294,14 +294,14 @@ def test_a_history_that_is_none(given: Any, said: str, tmp_path: Path, capsys: p
         assert not (tmp_path / "out").exists()
 
 
-def test_text_that_is_no_text(tmp_path: Path) -> None:
+def test_record_that_is_not_utf8_is_refused(tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_bytes(b"\xff\xfe0,1")
     with pytest.raises(SceneError, match="is not a record: it is not UTF-8 text"):
         of({"file": "record.csv", "quantity": "g"}, tmp_path)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in its folders")
-def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+def test_record_that_is_a_pipe_is_refused_without_waiting(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "record.csv")
     with pytest.raises(SceneError, match="cannot be read: it is not a regular file"):
         of({"file": "record.csv", "quantity": "g"}, tmp_path)
@@ -317,7 +317,7 @@ def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
         ({"beam": {"height": 0.1, "drive": {"force": [1, 0]}}}, "beam.drive: does not go with load.history"),
     ],
 )
-def test_what_does_not_go_with_it(changes: dict[str, Any], said: str) -> None:
+def test_keys_that_conflict_with_a_history_are_refused(changes: dict[str, Any], said: str) -> None:
     with pytest.raises(SceneError, match=said):
         scene_from_dict(content(**{"load__live": None, "load__history": PULSE, **changes}))
 
@@ -333,7 +333,7 @@ def test_what_does_not_go_with_it(changes: dict[str, Any], said: str) -> None:
         (["--model", "dem-dynamic", "--scale", "large"], "--scale"),
     ],
 )
-def test_a_response_that_cannot_be(
+def test_invalid_respond_options_are_refused(
     arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write_toml(content(load__live=None, load__history=PULSE), tmp_path / "wall.toml")
@@ -344,6 +344,6 @@ def test_a_response_that_cannot_be(
     assert not (tmp_path / "out").exists()
 
 
-def test_a_wall_whose_ground_stays_has_no_response(capsys: pytest.CaptureFixture[str]) -> None:
+def test_respond_needs_a_history(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["respond", "panel-01", "--model", "dem-dynamic"]) == 2
     assert "load.history: is missing" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Loads: several of them, of a user's own, and what a file and Python may say of them."""
+"""Loads: several at once, user-defined kinds, and what files and Python accept."""
 
 import math
 import re
@@ -43,7 +43,7 @@ DOWN = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1e3]}
 
 @dataclass(frozen=True)
 class Wind(Action):
-    """A pressure [Pa] on the left side of the wall: a load of one's own, which nothing in the package knows of."""
+    """A pressure [Pa] on the left side of the wall: a user-defined load that the package does not contain."""
 
     pressure: float
 
@@ -66,8 +66,8 @@ def tower(**changes: Any) -> Scene:
     return courses([[1], [1], [1]], width=0.24, height=0.12, joint=joint, **changes)
 
 
-def test_a_load_of_ones_own_runs_in_every_model() -> None:
-    """Wind on a tower b wide and h high of weight G: p h t h/2 = G b/2, whichever model is asked."""
+def test_user_defined_load_runs_in_every_model() -> None:
+    """Wind on a tower of width b, height h and weight G overturns it at p h t h/2 = G b/2 (`homog` refuses it)."""
     scene = tower(load__live=Wind(1.0))
     exact = scene.mass[scene.wall].sum() * 9.81 * 0.24 / (0.36**2 * 0.12)
     assert limit(scene).multiplier == pytest.approx(exact, rel=1e-8)
@@ -76,7 +76,7 @@ def test_a_load_of_ones_own_runs_in_every_model() -> None:
     assert outcome.upper is not None
     assert outcome.lower <= exact * (1 + 1e-3)
     assert outcome.upper >= exact * (1 - 1e-3)
-    assert homog_says(scene).startswith("model homog: has no closed form for this scene: it needs load.live.kind")
+    assert homog_refusal(scene).startswith("model homog: has no closed form for this scene: it needs load.live.kind")
     held = tower(load__live=Wind(1.0), support__kind="fixed-first-course")
     assert live_load(held)[0::3] == pytest.approx([0.0, 0.0144, 0.0144])
     assert held.control_point[1].tolist() == pytest.approx([0.0, 0.18])
@@ -85,13 +85,13 @@ def test_a_load_of_ones_own_runs_in_every_model() -> None:
     assert len(scene.load.live[0].arrows(scene)) == 3
 
 
-def homog_says(scene: Scene) -> str:
+def homog_refusal(scene: Scene) -> str:
     with pytest.raises(SceneError) as refused:
         homog(scene)
     return str(refused.value)
 
 
-def test_a_result_keeps_the_forces_of_a_load_of_ones_own(tmp_path: Path) -> None:
+def test_stored_scene_keeps_the_forces_of_user_defined_loads(tmp_path: Path) -> None:
     scene = tower(load__live=Wind(2.0), load__dead=[Wind(1.0), Lateral((0.0, 1.0))])
     save_outcome(Outcome("tower", "limit", "undecided"), tmp_path, scene=scene)
     again = load_scene(tmp_path)
@@ -100,8 +100,8 @@ def test_a_result_keeps_the_forces_of_a_load_of_ones_own(tmp_path: Path) -> None
     assert all(map(np.array_equal, again.control_point, scene.control_point))
 
 
-def test_live_loads_share_one_multiplier_and_dead_ones_have_none() -> None:
-    """A lateral load and as much body force are two, which half the multiplier takes; a dead load is no live one."""
+def test_multiplier_scales_all_live_loads_and_no_dead_load() -> None:
+    """A lateral load plus an equal body force halve the multiplier; a dead load leaves the live load unchanged."""
     halves = [{"kind": "lateral"}, {"kind": "body", "acceleration": [9.81, 0.0]}]
     both = panel(load__live=halves)
     one, two = limit(panel()).multiplier, limit(both).multiplier
@@ -116,7 +116,7 @@ def test_live_loads_share_one_multiplier_and_dead_ones_have_none() -> None:
 
 
 @pytest.mark.parametrize("to", ["right", "left", [3.0, 4.0], [0.0, -2.0]])
-def test_a_lateral_load_has_any_direction(to: Any) -> None:
+def test_lateral_load_in_any_direction(to: Any) -> None:
     scene = panel(load__live={"kind": "lateral", "direction": to})
     x, y = (-1.0 if to == "left" else 1.0, 0.0) if isinstance(to, str) else to
     unit = np.array([x, y]) / np.hypot(x, y)
@@ -124,29 +124,29 @@ def test_a_lateral_load_has_any_direction(to: Any) -> None:
     assert live_load(scene).reshape(-1, 3)[:, :2] == pytest.approx(9.81 * scene.mass[:, None] * unit)
 
 
-def test_a_block_is_pushed_by_all_of_its_weight_where_that_leans() -> None:
+def test_lateral_load_is_the_full_weight_if_gravity_is_inclined() -> None:
     scene = panel(load__gravity=[3.0, -4.0])
     assert live_load(scene).reshape(-1, 3)[:, :2] == pytest.approx(5.0 * scene.mass[:, None] * [1.0, 0.0])
 
 
-def test_ground_that_is_tilted_by_one_in_one_is_by_45_degrees() -> None:
-    """It turns about nothing that leans against the weight, by half a degree or more."""
+def test_tilt_multiplier_is_the_tangent_of_the_angle() -> None:
+    """A tilt direction that is not perpendicular to gravity, here by half a degree, is refused."""
     assert Tilt().note(1.0) == "the ground is tilted by 45°"
     assert Tilt().note(-(3**-0.5)) == "the ground is tilted by -30°"
     with pytest.raises(SceneError, match="must be across gravity, along the ground; to the right that is"):
         panel(load__live={"kind": "tilt", "direction": [1.0, 0.01]})
 
 
-def test_a_wall_pushed_to_the_left_is_the_mirror_image_of_one_pushed_to_the_right() -> None:
+def test_symmetric_wall_has_the_same_multiplier_to_the_left_and_right() -> None:
     right, left = (limit(panel(load__live={"kind": "lateral", "direction": to})).multiplier for to in ("right", "left"))
     assert left == pytest.approx(right, rel=1e-8)
 
 
-def test_a_direction_that_is_no_unit_vector_is_one_in_python_too() -> None:
+def test_direction_is_normalised_in_python() -> None:
     assert Lateral((1.0, 1.0)).direction == pytest.approx((0.5**0.5, 0.5**0.5))
 
 
-def test_a_direction_may_be_a_computed_one() -> None:
+def test_rounding_errors_are_removed_from_directions() -> None:
     assert Lateral((math.cos(math.pi / 2), 1.0)).direction == (0.0, 1.0)
 
 
@@ -156,8 +156,8 @@ def test_gravity_may_be_a_vector() -> None:
         panel(load__gravity=[0, float("nan")])
 
 
-def test_forces_are_the_same_to_rigid_and_to_deformable_blocks() -> None:
-    """Resultants of every kind of force, block by block; a moment too."""
+def test_loads_have_the_same_resultants_on_rigid_and_deformable_blocks() -> None:
+    """Block by block, for point loads, body forces and moments."""
     loads = (PointLoad((0.12, 0.36), (3.0, -4.0)), Body((1.0, -2.0)), Moments(5.0))
     scene = tower(block__young=1e9)
     scene = replace(scene, load=Load(scene.load.gravity, loads))
@@ -174,25 +174,25 @@ class Moments(Action):
     moment: float
 
     def forces(self, scene: Scene) -> Forces:
-        """The same on each."""
+        """The same moment on each block."""
         return Forces.on(scene, moment=self.moment)
 
 
 @dataclass(frozen=True)
 class Push(Action):
-    """A push of 1 N to the right on some blocks, at a point; or what is given, by mistake, in place of forces."""
+    """A force of 1 N to the right on some blocks, at a point; or `given`, an invalid return value, in its place."""
 
     block: Any
     at: tuple[float, float] = (0.0, 0.0)
     given: Any = ()
 
     def forces(self, scene: Scene) -> Forces:
-        """The push, unless something else is given."""
+        """The force, or `given` if that is set."""
         return Forces.on(scene, block=self.block, at=self.at, force=(1.0, 0.0)) if self.given == () else self.given
 
 
-def test_a_point_beside_the_wall_is_told_the_nearest_place_where_its_load_is_taken() -> None:
-    """On an arch of chords, where a drawn curve says little of where a voussoir's side is."""
+def test_point_load_beside_the_wall_is_refused_with_the_nearest_valid_point() -> None:
+    """On an arch made of chords, whose sides are not exactly where the drawn curve is."""
     walls = Path(__file__).parents[2] / "examples" / "walls"
     arch = tomllib.loads((walls / "arch_with_tie.toml").read_text(encoding="utf-8"))
     load = arch["load"]["live"][0]
@@ -206,8 +206,8 @@ def test_a_point_beside_the_wall_is_told_the_nearest_place_where_its_load_is_tak
     assert scene.load.live[0].blocks(scene).tolist() == [int(said[1])]  # type: ignore[attr-defined]
 
 
-def test_a_force_where_a_block_stands_on_its_ground_is_all_on_the_block() -> None:
-    """The ground bears none of it, and of two blocks that meet there each has half."""
+def test_point_load_at_the_base_acts_on_blocks_only() -> None:
+    """The ground carries none of it; if two blocks meet there, each carries half."""
     for x, blocks in ((0.12, [0]), (0.24, [0, 1])):
         forces = panel(load__live={"kind": "point", "at": [x, 0.0], "force": [4.0, -2.0]}).live_forces
         assert forces.block.tolist() == blocks
@@ -215,16 +215,16 @@ def test_a_force_where_a_block_stands_on_its_ground_is_all_on_the_block() -> Non
 
 
 @pytest.mark.parametrize(("moment", "x"), [(2.0, 0.24), (-2.0, 0.48)])
-def test_the_arrow_of_a_moment_is_on_the_side_that_it_moves_down(moment: float, x: float) -> None:
-    """On the left of its block where it is counter-clockwise."""
+def test_moment_arrow_is_on_the_side_that_moves_down(moment: float, x: float) -> None:
+    """On the left of its block if the moment is counter-clockwise."""
     scene = panel(load__live={"kind": "moment", "at": [0.3, 0.03], "moment": moment})
     (arrow,) = scene.load.live[0].arrows(scene)
     assert arrow.at == pytest.approx([x, 0.06])
     assert arrow.direction.tolist() == [0.0, -1.0]
 
 
-def test_moments_add_and_are_forces_neither_on_mass_nor_at_points_alone() -> None:
-    """So that λ beside one is no force in newtons, and a wall under one is none that is pushed by its weight."""
+def test_moments_add_and_are_neither_mass_nor_point_forces() -> None:
+    """With a moment in the live load λ is neither a force in newtons nor a multiple of the weight."""
     scene = tower()
     push = Forces.on(scene, block=[0], at=(0.1, 0.1), force=(0.6, -0.8))
     two, three = (Forces.on(scene, moment=size) for size in (2.0, 3.0))
@@ -257,21 +257,21 @@ def test_moments_add_and_are_forces_neither_on_mass_nor_at_points_alone() -> Non
         (Push([0], given=None), "load.live: Push.forces: must return Forces"),
     ],
 )
-def test_loads_that_are_none(live: Any, said: str) -> None:
+def test_invalid_loads_are_refused(live: Any, said: str) -> None:
     with pytest.raises(SceneError) as refused:
         panel(load__live=live)
     assert said in str(refused.value)
 
 
-def test_what_is_no_load_is_refused_in_python() -> None:
+def test_python_refuses_objects_that_are_no_loads() -> None:
     with pytest.raises(SceneError, match=r"load\.live"):
         Load(live=(3,))  # type: ignore[arg-type]
     assert Load(live=Lateral()) == Load()  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("ends", [(0.0, 1.44), (0.1, 0.5), (0.3, 1.2)])
-def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, float]) -> None:
-    """Along the top each block gets the force per length times the length on it, about its own middle."""
+def test_line_load_is_divided_exactly_at_the_joints(ends: tuple[float, float]) -> None:
+    """Each block of the top course gets the force per length times its loaded length, at the middle of that length."""
     live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [20.0, -100.0]}
     scene = panel(load__live=live)
     load = live_load(scene).reshape(-1, 3)
@@ -282,8 +282,8 @@ def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, f
     assert load == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_line_load_bends_a_block_as_it_does_spread_out() -> None:
-    """Its forces have q l³ / 12 about the middle of the line as well: in strains that are even they work as it does."""
+def test_line_load_forces_do_the_work_of_the_distributed_load() -> None:
+    """Their second moment about the line's middle is q l³ / 12, so their work in uniform strains is exact."""
     live = {"kind": "line", "from": [0.38, 0.72], "to": [0.52, 0.72], "force": [0.0, -100.0]}
     forces = panel(load__live=live).live_forces
     assert len(np.unique(forces.block)) == 1
@@ -291,8 +291,8 @@ def test_a_line_load_bends_a_block_as_it_does_spread_out() -> None:
     assert [(forces.force[:, 1] * arm**k).sum() for k in range(3)] == pytest.approx([-14.0, 0.0, -100 * 0.14**3 / 12])
 
 
-def test_a_line_load_is_cut_where_it_meets_the_edges_of_pieces() -> None:
-    """Where it crosses one, and where one ends on it; not where it would beyond its own ends."""
+def test_line_load_is_divided_at_the_edges_of_pieces() -> None:
+    """Where it crosses an edge and where an edge ends on it, but not at edges beyond the ends of the load."""
     scene = courses([[1]], load__live={"kind": "line", "from": [0.1, 0.1], "to": [0.3, 0.1], "force": [0.0, -1e3]})
     crossing, ending = [[0.2, 0.0], [0.1, 0.4]], [[0.25, 0.1], [0.3, 0.17]]
     beyond = [[0.35, 0.0], [0.35, 0.17]]
@@ -303,7 +303,7 @@ def test_a_line_load_is_cut_where_it_meets_the_edges_of_pieces() -> None:
 
 
 @pytest.mark.parametrize("ends", [(0.0, 1.44), (1.2, 0.3)])
-def test_arrows_of_a_line_load_are_spread_along_it_each_on_the_block_beneath(ends: tuple[float, float]) -> None:
+def test_line_load_arrows_are_evenly_spaced_on_the_blocks_beneath(ends: tuple[float, float]) -> None:
     live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [0.0, -100.0]}
     scene = panel(load__live=live)
     arrows = scene.load.live[0].arrows(scene)
@@ -313,8 +313,8 @@ def test_arrows_of_a_line_load_are_spread_along_it_each_on_the_block_beneath(end
 
 
 @pytest.mark.parametrize(("ends", "on"), [((0.0, 1.44), 1), ((0.12, 0.6), 2), ((0.3, 1.2), 1), ((1.2, 0.3), 1)])
-def test_displacements_under_a_line_load_are_read_at_its_middle(ends: tuple[float, float], on: int) -> None:
-    """On the block of the top course there, or the mean of the two that meet there."""
+def test_control_point_of_a_line_load_is_its_middle(ends: tuple[float, float], on: int) -> None:
+    """On the top-course block there, or on both blocks if two meet there."""
     live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [30.0, -40.0]}
     scene = panel(load__live=live)
     block, at, direction = scene.control_point
@@ -326,11 +326,11 @@ def test_displacements_under_a_line_load_are_read_at_its_middle(ends: tuple[floa
 
 @pytest.mark.parametrize("angle", [80.0, 40.0, 10.0, 1.0])
 @pytest.mark.parametrize("along", [True, False])
-def test_a_line_load_that_crosses_a_joint_is_cut_there_however_flat(angle: float, along: bool) -> None:
-    """Half of a line whose middle is on a head joint is on either block, about the middle of its own half.
+def test_line_load_across_a_joint_is_divided_there_at_any_angle(angle: float, along: bool) -> None:
+    """A line load at an angle to a head joint, with its middle on it: each block carries the half that lies on it.
 
-    Contact reaches along the joint the farther the flatter the line: all of that was on the block that the force
-    presses on, and of a force along the line it was refused as on neither.
+    The smaller that angle, the longer the part of the line within contact distance of the joint. All of that part once
+    went to the block that the force presses on, and for a force along the line the load was refused.
     """
     run = 0.02 * np.array([np.sin(np.radians(angle)), -np.cos(np.radians(angle))])
     middle, force = np.array([0.24, 0.03]), 5000 * run if along else np.array([0.0, -100.0])
@@ -347,10 +347,10 @@ def test_a_line_load_that_crosses_a_joint_is_cut_there_however_flat(angle: float
 @pytest.mark.parametrize("angle", [60.0, 20.0, 4.0, 0.5])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("along", [True, False])
-def test_a_line_load_through_a_corner_that_it_touches_is_cut_there(angle: float, sense: float, along: bool) -> None:
-    """Where a head joint ends at the stone above, a line comes from that beside it and passes the other's corner.
+def test_line_load_through_a_corner_is_divided_there(angle: float, sense: float, along: bool) -> None:
+    """The line enters the stone above at the end of a head joint and passes the corner of the block beyond that joint.
 
-    Contact with that one reaches along the line the farther the flatter that is: a force along it was refused.
+    The flatter the line, the longer its part within contact distance of that block: a force along the line was refused.
     """
     corner, run = np.array([0.24, 0.06]), 0.02 * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
     run[0] *= sense
@@ -364,10 +364,10 @@ def test_a_line_load_through_a_corner_that_it_touches_is_cut_there(angle: float,
     assert np.flatnonzero(load.any(axis=1)).tolist() == sorted(halves)
 
 
-def test_a_line_load_on_slanting_blocks_is_cut_at_their_corners() -> None:
-    """Two blocks on the ground with a slanting joint, a gap, and a third: each has what lies on its top, to rounding.
+def test_line_load_over_inclined_joint_and_gap_is_divided_at_corners() -> None:
+    """Two blocks with an inclined joint, a gap and a third block: each carries the load on its top, to rounding.
 
-    Contact reaches beyond a slanting side to one side only, and past a corner beside a gap.
+    The contact distance reaches past an inclined joint on one side only, and past a corner beside a gap.
     """
     tops = [(0.0, 0.4), (0.4, 0.7), (0.9, 1.3)]
     outlines = [
@@ -388,8 +388,8 @@ def test_a_line_load_on_slanting_blocks_is_cut_at_their_corners() -> None:
 
 
 @pytest.mark.parametrize("along", [0.0, 800.0, -3000.0, 1e5])
-def test_a_line_load_in_a_bed_joint_is_on_the_block_that_its_part_across_presses_on(along: float) -> None:
-    """However inclined it is, as a hair below the joint; inclined ones went to the course above and below by turns."""
+def test_line_load_in_a_bed_joint_acts_on_the_block_it_presses_on(along: float) -> None:
+    """At any inclination, as just below the joint; inclined loads once alternated between the courses."""
     borne = []
     for y in (0.12, 0.1199):
         line = {"kind": "line", "force": [along, -1000.0], "from": [0.1, y], "to": [0.9, y]}
@@ -399,16 +399,16 @@ def test_a_line_load_in_a_bed_joint_is_on_the_block_that_its_part_across_presses
     assert borne[0] == pytest.approx(np.array(borne[1]), rel=1e-9, abs=1e-9)
 
 
-def test_a_line_load_along_a_joint_presses_on_neither_side() -> None:
-    """Nor does it by rounding."""
+def test_line_load_along_a_joint_is_refused() -> None:
+    """Not even by rounding errors of the force; such a load is refused."""
     for low, high in ((0.005, 0.055), (0.01, 0.03)):
         live = {"kind": "line", "from": [0.24, low], "to": [0.24, high], "force": [1e-13, -1000.0]}
         with pytest.raises(SceneError, match="presses on neither alone"):
             limit(panel(load__live=[live]))
 
 
-def test_a_line_load_along_a_slanting_joint_presses_on_neither_side() -> None:
-    """Whichever side rounding of its parts is on."""
+def test_line_load_along_an_inclined_joint_is_refused() -> None:
+    """Whatever the rounding of its components."""
     outlines = [
         np.array([[0, 0], [0.2, 0], [0.4, 0.3], [0, 0.3]]),
         np.array([[0.2, 0], [0.7, 0], [0.7, 0.3], [0.4, 0.3]]),
@@ -421,8 +421,8 @@ def test_a_line_load_along_a_slanting_joint_presses_on_neither_side() -> None:
 
 
 @pytest.mark.parametrize(("force", "block"), [(-1e3, 0), (1e3, 1)])
-def test_a_line_load_on_a_block_that_is_not_convex_is_on_the_side_that_it_presses_on(force: float, block: int) -> None:
-    """An L, whose centroid lies above the joint with a small block in its corner."""
+def test_line_load_on_a_non_convex_block_acts_on_the_block_it_presses_on(force: float, block: int) -> None:
+    """An L-shaped block, whose centroid lies above its joint with the small block in its corner."""
     outlines = [
         np.array([[0, 0], [1, 0], [1, 0.2], [0.3, 0.2], [0.3, 1], [0, 1]]),
         np.array([[0.3, 0.2], [1, 0.2], [1, 0.4], [0.3, 0.4]]),

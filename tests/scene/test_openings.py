@@ -1,4 +1,4 @@
-"""Walls as people draw them: courses of different heights, openings at any place, lintels."""
+"""Courses of different heights, openings at any place, lintels."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ def opening(x0: float, y0: float, x1: float, y1: float, lintel: Any = None) -> d
     return {"from": [x0, y0], "to": [x1, y1]} | ({} if lintel is None else {"lintel": lintel})
 
 
-def pierced(*openings: dict[str, Any], **changes: Any) -> Scene:
+def with_openings(*openings: dict[str, Any], **changes: Any) -> Scene:
     return panel(**(SIZE | {"wall__opening": list(openings)} | changes))
 
 
@@ -41,7 +41,7 @@ def boxes(scene: Scene) -> Any:
 # --- courses of different heights ----------------------------------------------------------------------------------
 
 
-def test_courses_of_equal_heights_are_those_of_one_block_height() -> None:
+def test_equal_course_heights_give_the_same_wall_as_one_block_height() -> None:
     plain = panel()
     listed = panel(wall__block_height=None, wall__course_heights=[0.06] * 12, wall__height=None)
     assert listed.bond == plain.bond
@@ -65,8 +65,8 @@ def test_each_course_has_its_height(by: str) -> None:
         homog(scene)
 
 
-def test_a_stack_of_courses_topples_at_its_height() -> None:
-    """One block a course: λ = b / h of the whole stack, whatever the heights."""
+def test_stack_of_unequal_courses_overturns_at_b_over_h() -> None:
+    """One block per course: λ = b / h of the whole stack, for any course heights."""
     keys = {"wall__block_height": None, "wall__height": None, "wall__length": None, "joint__friction": 2.0}
     scene = panel(**keys, wall__course_heights=[0.3, 0.1, 0.2], wall__courses=[[1], [1], [1]])
     assert limit(scene).multiplier == pytest.approx(0.24 / 0.6, rel=1e-8)
@@ -75,25 +75,25 @@ def test_a_stack_of_courses_topples_at_its_height() -> None:
 # --- openings ------------------------------------------------------------------------------------------------------
 
 
-def test_an_opening_on_the_lattice_is_that_of_a_list_of_courses() -> None:
+def test_opening_on_the_lattice_equals_a_gap_in_a_list_of_courses() -> None:
     whole, half = [1.0] * 6, [0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 0.5]
     pattern = [[1.0, 1.0, -2.0, 1.0, 1.0], [0.5, 1.0, 0.5, -2.0, 0.5, 1.0, 0.5]] * 3 + [whole, half] * 2
     keys = {key: value for key, value in SIZE.items() if key not in ("wall__length", "wall__height")}
     listed = courses(pattern, 0.5, 0.2, **{k: v for k, v in keys.items() if "block_" not in k})
-    cut = pierced(opening(1.0, 0.0, 2.0, 1.2))
+    cut = with_openings(opening(1.0, 0.0, 2.0, 1.2))
     assert boxes(cut) == pytest.approx(boxes(listed), abs=1e-9)
     assert len(cut.joints) == len(listed.joints)
     assert limit(cut).multiplier == pytest.approx(limit(listed).multiplier, rel=1e-9)
 
 
-def test_an_opening_is_cut_from_a_list_of_courses_too() -> None:
+def test_opening_in_a_list_of_courses() -> None:
     pattern = [[1.0] * 6, [0.5, 1, 1, 1, 1, 1, 0.5]] * 3
     listed = courses([row[:] for row in pattern], 0.5, 0.2, wall__opening=[opening(1.0, 0.4, 2.0, 0.8)])
     assert listed.blocks.area[listed.wall].sum() == pytest.approx(3.0 * 1.2 - 0.4)
 
 
-def test_a_corner_inside_a_block_leaves_it_l_shaped() -> None:
-    scene = pierced(opening(0.8, 0.0, 1.8, 1.1))
+def test_opening_corner_inside_a_block_leaves_an_l_shape() -> None:
+    scene = with_openings(opening(0.8, 0.0, 1.8, 1.1))
     corners = np.diff(scene.blocks.first)[scene.wall]
     ells = np.flatnonzero(corners == 6)
     # The sixth course, from 1.0 to 1.2 m, starts with a half block: its joints are at 0.75, 1.25 and 1.75 m.
@@ -102,9 +102,9 @@ def test_a_corner_inside_a_block_leaves_it_l_shaped() -> None:
     assert scene.blocks.area[scene.wall].sum() == pytest.approx(6.0 - 1.1)
 
 
-def test_slivers_are_part_of_the_stone_beside_them() -> None:
-    """0.05 m of a block 0.5 m long would be left beside the opening: the block before it is longer by so much."""
-    scene = pierced(opening(0.8, 0.0, 1.7, 1.2))
+def test_slivers_are_merged_with_the_next_block() -> None:
+    """0.05 m of a 0.5 m block would be left beside the opening; it is added to the next block instead."""
+    scene = with_openings(opening(0.8, 0.0, 1.7, 1.2))
     width = np.ptp(boxes(scene)[:, [0, 2]], axis=1)
     assert width.min() == pytest.approx(0.25)
     assert {0.55, 0.3} <= set(width.round(9))
@@ -112,65 +112,65 @@ def test_slivers_are_part_of_the_stone_beside_them() -> None:
 
 
 def test_a_slot_cuts_a_block_in_two() -> None:
-    scene = pierced(opening(0.7, 1.8, 0.8, 2.0), wall__first_course="half")
+    scene = with_openings(opening(0.7, 1.8, 0.8, 2.0), wall__first_course="half")
     top = boxes(scene)[boxes(scene)[:, 1] == 1.8]
     assert sorted(top[:, 2] - top[:, 0])[:2] == pytest.approx([0.2, 0.2])
     assert len(top) == 7
 
 
-def test_a_joint_met_to_within_rounding_is_met() -> None:
-    exact, near = (pierced(opening(1.0 + e, 0.4 - e, 2.0 - e, 1.2 + e)) for e in (0.0, 1e-8))
+def test_opening_edges_snap_to_joints_within_rounding() -> None:
+    exact, near = (with_openings(opening(1.0 + e, 0.4 - e, 2.0 - e, 1.2 + e)) for e in (0.0, 1e-8))
     assert np.array_equal(exact.blocks.vertices, near.blocks.vertices)
 
 
 @pytest.mark.parametrize(
     ("box", "floating"),
     [
-        ((0.0, 0.4, 1.0, 1.2), False),  # a notch in the left side
-        ((2.0, 0.0, 3.0, 1.2), False),  # one at the bottom right: the wall above overhangs
-        ((1.0, 1.6, 2.0, 2.0), False),  # one from the top
-        ((0.0, 0.4, 3.0, 1.2), True),  # all courses of it
-        ((0.0, 0.0, 3.0, 0.2), False),  # the first course alone: the wall stands on the second
+        ((0.0, 0.4, 1.0, 1.2), False),  # notch in the left side
+        ((2.0, 0.0, 3.0, 1.2), False),  # at the bottom right: the wall above overhangs
+        ((1.0, 1.6, 2.0, 2.0), False),  # from the top
+        ((0.0, 0.4, 3.0, 1.2), True),  # along the whole length
+        ((0.0, 0.0, 3.0, 0.2), False),  # the whole first course: the wall stands on the second
     ],
 )
-def test_notches_end_at_a_side_of_the_wall(box: Any, floating: bool) -> None:
+def test_notches_at_the_sides_of_the_wall(box: Any, floating: bool) -> None:
     if floating:
         with pytest.raises(SceneError, match="is a floating block"):
-            pierced(opening(*box))
+            with_openings(opening(*box))
     else:
         cut = (box[2] - box[0]) * (box[3] - box[1])
-        scene = pierced(opening(*box))
+        scene = with_openings(opening(*box))
         assert scene.blocks.area[scene.wall].sum() == pytest.approx(6.0 - cut)
 
 
-def test_a_lintel_is_one_block_of_its_material() -> None:
-    scene = pierced(opening(1.0, 0.0, 2.0, 1.1, LINTEL | {"material": "oak"}), opening(2.4, 1.0, 2.6, 1.4))
+def test_lintel_is_one_block_of_its_own_material() -> None:
+    scene = with_openings(opening(1.0, 0.0, 2.0, 1.1, LINTEL | {"material": "oak"}), opening(2.4, 1.0, 2.6, 1.4))
     lintel = int(scene.wall.sum()) - 1
     assert scene.blocks.polygon(lintel) == pytest.approx(np.array([[0.75, 1.1], [2.25, 1.1], [2.25, 1.3], [0.75, 1.3]]))
     assert scene.density[lintel] == 700.0
     assert (scene.density[:lintel] == 1800.0).all()
     assert scene.blocks.area[scene.wall].sum() == pytest.approx(6.0 - 1.1 - 0.2 * 0.4)
-    plain = pierced(opening(1.0, 0.0, 2.0, 1.1, LINTEL))
+    plain = with_openings(opening(1.0, 0.0, 2.0, 1.1, LINTEL))
     assert (plain.density[plain.wall] == 1800.0).all()
-    # It lies in beds cut out of the courses on either side.
+    # It is let into the courses on either side.
     on = (scene.joints.block == lintel).any(axis=1)
     run = np.abs(np.diff(scene.joints.ends[on], axis=1))[:, 0]
     assert run[run[:, 1] < 1e-9, 0].sum() == pytest.approx(0.25 * 2 + 1.5)
 
 
-def test_a_wall_falls_through_an_opening_without_a_lintel() -> None:
-    """Without friction to speak of, the blocks above a wide opening fall; a lintel bears them."""
+def test_lintel_carries_the_blocks_above_a_wide_opening() -> None:
+    """With almost no friction (tan φ = 0.01) the blocks above a wide opening fall; a lintel carries them."""
     wide = (0.5, 0.0, 2.5, 1.0)
-    assert limit(pierced(opening(*wide), joint__friction=0.01)).status == "infeasible"
-    assert limit(pierced(opening(*wide, LINTEL), joint__friction=0.01)).status == "collapse"
+    assert limit(with_openings(opening(*wide), joint__friction=0.01)).status == "infeasible"
+    assert limit(with_openings(opening(*wide, LINTEL), joint__friction=0.01)).status == "collapse"
 
 
 def test_a_mirrored_wall_has_the_same_multiplier() -> None:
     holes = [(0.8, 0.0, 1.7, 1.1), (2.1, 0.5, 2.63, 1.2)]
     left = [opening(3.0 - x1, y0, 3.0 - x0, y1, LINTEL if k == 0 else None) for k, (x0, y0, x1, y1) in enumerate(holes)]
     right = [opening(*hole, LINTEL if k == 0 else None) for k, hole in enumerate(holes)]
-    one = pierced(*right)
-    other = pierced(*left, load__live={"kind": "lateral", "direction": "left"})
+    one = with_openings(*right)
+    other = with_openings(*left, load__live={"kind": "lateral", "direction": "left"})
     mirrored = boxes(other) * [-1, 1, -1, 1] + [3, 0, 3, 0]
     mirrored = mirrored[:, [2, 1, 0, 3]]
     assert mirrored[np.lexsort(mirrored.T)] == pytest.approx(boxes(one), abs=1e-9)
@@ -182,12 +182,12 @@ corners = st.tuples(st.integers(0, 40), st.integers(0, 30), st.integers(1, 16), 
 
 @given(st.lists(corners, min_size=1, max_size=3))
 @settings(max_examples=200)
-def test_what_is_left_is_the_wall_but_for_its_openings(drawn: list[Any]) -> None:
-    """Areas add up, no stone is a sliver, and whatever is refused is refused in a line."""
+def test_random_openings_leave_the_rest_of_the_wall(drawn: list[Any]) -> None:
+    """The remaining area is exact, no block is a sliver or lies in an opening, and the rest is refused."""
     spans = [(x / 16, y / 20, (x + w) / 16, (y + h) / 20) for x, y, w, h, _ in drawn]
     holes = [opening(*span, LINTEL if over else None) for span, (*_, over) in zip(spans, drawn, strict=True)]
     try:
-        scene = pierced(*holes)
+        scene = with_openings(*holes)
     except SceneError as error:
         said = str(error)
         event(said.partition(": ")[2][:12])
@@ -303,7 +303,7 @@ GOOD = opening(1.0, 0.0, 2.0, 1.2)
         ),
     ],
 )
-def test_geometry_of_no_wall_is_refused_in_a_line(changes: dict[str, Any], said: str) -> None:
+def test_invalid_heights_openings_and_lintels_are_refused(changes: dict[str, Any], said: str) -> None:
     with pytest.raises(SceneError) as refused:
         scene_from_dict(content(**(SIZE | changes)))
     assert said in str(refused.value)
@@ -311,8 +311,8 @@ def test_geometry_of_no_wall_is_refused_in_a_line(changes: dict[str, Any], said:
 
 
 @pytest.mark.parametrize("unit", [0.1, 1.0, 10.0, 100.0])
-def test_three_quarters_of_a_block_beside_an_opening_stay_whole_in_whatever_unit(unit: float) -> None:
-    """They are as wide as what may stay whole, and were cut or not by the last bit of their width."""
+def test_three_quarter_blocks_beside_an_opening_are_not_split_in_any_unit(unit: float) -> None:
+    """They are exactly as wide as the limit for splitting; rounding of the width once decided whether they split."""
     size = {"length": 0.8, "height": 1.2, "block_width": 0.2, "block_height": 0.2, "thickness": 0.1}
     hole = {"from": [round(0.25 * unit, 9), round(0.2 * unit, 9)], "to": [round(0.45 * unit, 9), round(0.6 * unit, 9)]}
     wall = {key: round(value * unit, 9) for key, value in size.items()} | {"opening": [hole]}

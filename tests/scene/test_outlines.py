@@ -1,4 +1,4 @@
-"""Walls of stones that a file or a script lists, corner by corner."""
+"""Walls of stones whose corners are listed in a file or script (`wall.outlines`)."""
 
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,8 @@ TABLES: dict[str, Any] = {
 }
 
 
-def test_listed_stones_are_the_wall_that_is_drawn_of_them(tmp_path: Path) -> None:
-    """In mm, with their ground; rings may end where they began, run either way, and have corners within a side."""
+def test_listed_stones_give_the_same_wall_as_their_drawing(tmp_path: Path) -> None:
+    """In mm, with ground. Rings may repeat the first corner, run in either sense and have corners within a side."""
     dxf(tmp_path / "wall.dxf", closed())
     drawn = rb.Wall({**TABLES, "wall": {"drawing": "wall.dxf", "units": "mm", "thickness": 0.2}}, tmp_path)
     untidy = [np.array([*brick[::-1], brick[-1]]) for brick in BRICKS]
@@ -38,7 +38,7 @@ def test_listed_stones_are_the_wall_that_is_drawn_of_them(tmp_path: Path) -> Non
     )
 
 
-def test_stones_have_the_numbers_that_they_are_listed_by() -> None:
+def test_stones_are_numbered_in_the_order_of_the_list() -> None:
     order = [4, 0, 6, 2, 1, 5, 3]
     stones = [np.array(BRICKS[k]) / 1000 for k in order]
     wall = rb.Wall.outlines(stones, **THICK)
@@ -47,7 +47,7 @@ def test_stones_have_the_numbers_that_they_are_listed_by() -> None:
     assert np.argmax(heavier.scene.mass[: len(order)] / heavier.scene.blocks.area[: len(order)]) == 2
 
 
-def test_stones_without_ground_stand_on_a_strip_under_the_lowest() -> None:
+def test_stones_without_ground_get_a_strip_below_the_lowest_one() -> None:
     wall = rb.Wall.outlines(BRICKS, units="mm", **THICK)
     low, high = wall.scene.blocks.extent(wall.scene.fixed)
     assert high[1] == pytest.approx(0.0)
@@ -57,7 +57,7 @@ def test_stones_without_ground_stand_on_a_strip_under_the_lowest() -> None:
     )
 
 
-def test_gaps_of_listed_stones_are_healed_as_those_of_drawn_ones_are() -> None:
+def test_gaps_between_listed_stones_are_healed() -> None:
     apart = [np.array(brick) + [0.4 * k, 0.0] for k, brick in enumerate(BRICKS[:2])]
     wall = rb.Wall.outlines(apart, units="mm", heal=0.001, **THICK)
     assert sorted(wall.scene.joints.length) == pytest.approx([0.1, 0.2, 0.2], abs=1e-3)
@@ -81,15 +81,15 @@ def test_gaps_of_listed_stones_are_healed_as_those_of_drawn_ones_are() -> None:
         ({"drawing": "wall.dxf"}, "wall.outlines: does not go with wall.drawing"),
     ],
 )
-def test_outlines_of_no_wall_are_refused(keys: dict[str, Any], message: str) -> None:
+def test_invalid_outlines_are_refused(keys: dict[str, Any], message: str) -> None:
     wall = {"outlines": [[[0, 0], [1, 0], [1, 1], [0, 1]]], "thickness": 0.2, **keys}
     with pytest.raises(SceneError) as refused:
         rb.Wall({**TABLES, "wall": wall})
     assert str(refused.value).startswith(message)
 
 
-def test_outlines_may_be_whatever_numpy_reads_as_arrays() -> None:
-    """Stones of unlike numbers of corners are an array of arrays; shapely's coordinates are none, but read as one."""
+def test_outlines_may_be_object_arrays_or_coordinate_sequences() -> None:
+    """Stones with different numbers of corners as an object array; shapely's coordinates, which are no arrays."""
     stones = np.empty(2, dtype=object)
     stones[:] = [np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), np.array([[1, 0], [2, 0], [1, 1]])]
     wall = rb.Wall.outlines(stones, **THICK)
@@ -99,8 +99,8 @@ def test_outlines_may_be_whatever_numpy_reads_as_arrays() -> None:
     assert fingerprint(rings.scene, "limit", 0.01) == fingerprint(wall.scene, "limit", 0.01)
 
 
-def test_refusals_of_many_stones_are_one_short_line() -> None:
-    """Where a key is given without its table the message says how, and has no room for all that it was given."""
+def test_messages_about_many_stones_are_one_short_line() -> None:
+    """For a key given without its table the message shows how to give it, but not the whole value."""
     wall = rb.Wall.outlines(BRICKS, units="mm", **THICK)
     for keys in ({"outlines": 50 * BRICKS}, {"wall__outlines": 50 * BRICKS}):
         with pytest.raises(SceneError, match=r'give it as \{"wall.outlines": .*…}$') as refused:
@@ -108,7 +108,7 @@ def test_refusals_of_many_stones_are_one_short_line() -> None:
         assert len(str(refused.value)) < 250
 
 
-def test_advice_about_listed_stones_speaks_of_no_drawing_and_of_keys_they_have() -> None:
+def test_messages_about_listed_stones_name_their_own_keys() -> None:
     with pytest.raises(SceneError, match="the wall brings its ground"):
         rb.Wall.outlines(BRICKS, [GROUND], units="mm", support="corners", **THICK)
     (length, _) = warnings(rb.Wall.outlines(BRICKS, **THICK).scene)

@@ -1,4 +1,4 @@
-"""What looks like a slip: each warning on a scene that has it, and none on a near one that has not."""
+"""Warnings about likely input errors: each one on a faulty scene, and none on a similar correct scene."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -22,13 +22,13 @@ FIRST = {"assign": [{"block": "oak", "blocks": [0]}]}
 OAK = {"materials": {"oak": {"density": 700.0}}} | FIRST
 
 
-def test_no_published_wall_looks_like_a_slip() -> None:
+def test_published_walls_have_no_warnings() -> None:
     assert {case.name: warnings(published_scene(case.name)) for case in PUBLISHED} == {
         case.name: () for case in PUBLISHED
     }
 
 
-def test_no_wall_of_the_studies_looks_like_a_slip() -> None:
+def test_walls_of_the_studies_have_no_warnings() -> None:
     scenes = {name: wall.scene for name, wall in all_walls().items()} | {name: known_scene(name) for name in KNOWN}
     assert {name: warnings(scene) for name, scene in scenes.items()} == dict.fromkeys(scenes, ())
 
@@ -94,8 +94,8 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (settles(2.0), "load.live.by = 2: moves a support by more than a tenth", settles(0.02)),
     ],
 )
-def test_numbers_in_another_unit(odd: dict[str, Any], says: str, near: Any) -> None:
-    """The line names the key, the value and what may be meant; the wall beside it, as it may well be, has none."""
+def test_values_in_a_wrong_unit_are_warned_about(odd: dict[str, Any], says: str, near: Any) -> None:
+    """The warning names the key, the value and what may be meant; the plausible value `near` has no warning."""
     near = near if isinstance(near, dict) else dict.fromkeys(odd, near)
     first, _, second = says.partition(" * ")
     (line,) = warnings(panel(**odd))
@@ -105,7 +105,7 @@ def test_numbers_in_another_unit(odd: dict[str, Any], says: str, near: Any) -> N
     assert warnings(panel(**near)) == ()
 
 
-def test_weightless_is_meant() -> None:
+def test_zero_gravity_has_no_warning() -> None:
     live = {"kind": "point", "at": [1.44, 0.72], "force": [1.0, 0.0]}
     assert warnings(panel(load={"gravity": 0.0, "live": live})) == ()
 
@@ -123,7 +123,7 @@ def test_weightless_is_meant() -> None:
         ([[1], [1], [1]], []),
     ],
 )
-def test_a_course_that_ends_short(pattern: list[list[float]], says: list[str]) -> None:
+def test_course_that_is_too_short_is_warned_about(pattern: list[list[float]], says: list[str]) -> None:
     lines = warnings(courses(pattern, joint={"friction": 0.6}))
     assert len(lines) == bool(says)
     for words in says:
@@ -138,8 +138,8 @@ def boxes(*places: tuple[float, float, float, float]) -> Scene:
 
 
 @pytest.mark.parametrize(("drop", "is_odd"), [(0.002, True), (0.0, False), (0.05, False)])
-def test_courses_that_do_not_line_up(drop: float, is_odd: bool) -> None:
-    """A block 2 mm lower than its neighbours leaves a gap above it; one 5 cm lower is another course."""
+def test_misaligned_courses_are_warned_about(drop: float, is_odd: bool) -> None:
+    """A block 2 mm lower than its neighbours is an error; one 5 cm lower belongs to another course."""
     low = [(0.2, 0.0, 0.2, 0.1 - drop)]
     first = [(0.0, 0.0, 0.2, 0.1), (0.4, 0.0, 0.2, 0.1), (0.6, 0.0, 0.2, 0.1)]
     second = [(x, 0.1 - (drop if x == 0.2 else 0.0), 0.2, 0.1) for x in (0.0, 0.2, 0.4, 0.6)]
@@ -149,7 +149,7 @@ def test_courses_that_do_not_line_up(drop: float, is_odd: bool) -> None:
         assert "y = 0.098 and 0.1 m, 2 mm apart" in lines[0]
 
 
-def test_stones_cut_along_an_arch_are_in_no_course_of_their_own() -> None:
+def test_stones_cut_by_an_arch_are_no_misaligned_course() -> None:
     """The lowest corner of a stone above an arch lies 2 mm below its bed, where the arch cuts it."""
     course = [(x, y, 0.2, 0.1) for y in (0.0, 0.1) for x in (0.0, 0.4, 0.6, 0.8)]
     cut = [[(0.2, 0.0), (0.4, 0.0), (0.4, 0.1), (0.3, 0.098), (0.2, 0.1)]]
@@ -161,15 +161,15 @@ def test_stones_cut_along_an_arch_are_in_no_course_of_their_own() -> None:
 
 
 @pytest.mark.parametrize(("gap", "is_odd"), [(0.002, True), (0.0, False), (0.08, False)])
-def test_blocks_side_by_side_that_never_touch(gap: float, is_odd: bool) -> None:
-    """Head joints of 2 mm that were drawn open; piers are apart, and blocks that touch have their joints."""
+def test_open_head_joints_are_warned_about(gap: float, is_odd: bool) -> None:
+    """Head joints drawn 2 mm open; none for touching blocks (gap 0) and separate piers (gap 80 mm)."""
     piers = [(x, y, 0.2, 0.1) for y in (0.0, 0.1) for x in (0.0, 0.2 + gap, 0.4 + 2 * gap)]
     lines = warnings(boxes(*piers))
     assert [line.startswith("wall: no head joint") for line in lines] == [True] * is_odd
     assert all("2 mm apart" in line for line in lines)
 
 
-def test_a_drawing_in_millimetres_read_as_metres() -> None:
+def test_drawing_in_millimetres_read_as_metres_is_warned_about() -> None:
     (size, thick) = warnings(boxes(*((240.0 * k, 0.0, 240.0, 60.0) for k in range(6))))
     assert size.startswith("wall: length = 1440: ")
     assert "is 1440 mm meant" in size
@@ -198,12 +198,12 @@ def test_show_warns_below_its_table(odd: str, capsys: pytest.CaptureFixture[str]
     assert lines[-1].startswith("warning: block.density = 18: is not within")
 
 
-def test_a_plain_wall_is_shown_without_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_has_no_warning_for_a_plain_wall(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["show", "panel-01"]) == 0
     assert "warning" not in capsys.readouterr().out
 
 
-def test_what_a_drawing_healed_is_said_with_the_warnings() -> None:
+def test_remarks_are_notes_followed_by_warnings() -> None:
     scene = replace(panel(block__density=18.0), notes=("2 gaps of up to 0.1 mm closed",))
     assert remarks(scene) == ("note: 2 gaps of up to 0.1 mm closed", *(f"warning: {x}" for x in warnings(scene)))
 
@@ -217,14 +217,14 @@ def test_what_a_drawing_healed_is_said_with_the_warnings() -> None:
         (0.01, 3.0, ""),
     ],
 )
-def test_records_in_another_unit(step: float, peak: float, says: str) -> None:
+def test_records_in_a_wrong_unit_are_warned_about(step: float, peak: float, says: str) -> None:
     history = History(step * np.arange(9.0), peak * np.column_stack([np.sin(np.arange(9.0) * np.pi / 2), np.zeros(9)]))
     found = warnings(replace(panel(), load=Load(live=(history,))))
     assert len(found) == bool(says)
     assert all(part in "".join(found) for part in says.split(" * "))
 
 
-def test_a_wall_whose_ground_moves_is_shown_with_its_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_the_ground_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shaken = {"pulse": {"kind": "sine", "amplitude": 0.3, "period": 0.5}, "quantity": "g"}
     path = write_toml(content(load__live=None, load__history=shaken), tmp_path / "wall.toml")
     assert command(["show", str(path)]) == 0
@@ -233,8 +233,8 @@ def test_a_wall_whose_ground_moves_is_shown_with_its_motion(tmp_path: Path, caps
     assert "warning" not in printed
 
 
-def test_a_tie_that_ends_in_an_opening_looks_like_a_slip() -> None:
-    """Half a metre from the jambs, farther than a block is wide; as far beside the wall it is an anchor."""
+def test_tie_that_ends_in_an_opening_is_warned_about() -> None:
+    """0.5 m from the jambs, more than the block size; at that distance beside the wall it is an anchor, no warning."""
     opening = {"from": [1.0, 0.0], "to": [2.0, 1.5], "lintel": {"height": 0.25, "bearing": 0.25}}
     said = {}
     for x in (1.5, -0.5):

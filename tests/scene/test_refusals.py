@@ -1,4 +1,4 @@
-"""Bad input: one clear line on standard error, exit code 2, nothing written, nothing on standard output."""
+"""Invalid input: one clear line on standard error, exit code 2, no files, nothing on standard output."""
 
 import copy
 import subprocess
@@ -165,7 +165,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         ({"wall": {"drawing": "no.dxf", "units": "miles", "thickness": 0.1}}, "wall.units = 'miles'"),
     ],
 )
-def test_a_scene_that_is_no_wall(
+def test_invalid_scene_is_refused(
     changes: dict[str, Any], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     scene = write_toml(content(**changes), tmp_path / "wall.toml")
@@ -197,7 +197,7 @@ def test_a_scene_that_is_no_wall(
         (("tie", 1), "yield", "yeild"),
     ],
 )
-def test_a_misspelt_key_is_told_and_not_what_is_missing_for_want_of_it(
+def test_misspelt_key_is_reported_instead_of_the_missing_key(
     table: tuple[str | int, ...], key: str, misspelt: str
 ) -> None:
     tables: dict[str, Any] = copy.deepcopy({**PLAIN, **LISTED})
@@ -209,8 +209,8 @@ def test_a_misspelt_key_is_told_and_not_what_is_missing_for_want_of_it(
         scene_from_dict(tables)
 
 
-def test_what_is_no_table_is_not_looked_into_for_misspelt_keys() -> None:
-    """However deep it is; and what a refusal came of stays known where no key is misspelt."""
+def test_search_for_misspelt_keys_ignores_values_that_are_no_tables() -> None:
+    """Even for deep nesting. Without a misspelt key the error keeps its original cause."""
     deep: Any = 1.0
     for _ in range(700):
         deep = {"a": deep}
@@ -233,7 +233,7 @@ def test_what_is_no_table_is_not_looked_into_for_misspelt_keys() -> None:
         (b"x = " + b"9" * 5000, "is not valid TOML"),
     ],
 )
-def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_toml_is_refused(text: bytes, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scene = tmp_path / "wall.toml"
     scene.write_bytes(text)
     assert command(["run", str(scene), "--model", "limit"]) == 2
@@ -264,7 +264,7 @@ def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys:
         (["collapse", "panel-01"], "Unknown command"),
     ],
 )
-def test_a_command_that_is_none(
+def test_invalid_command_line_is_refused(
     arguments: list[str],
     said: str,
     tmp_path: Path,
@@ -281,10 +281,10 @@ def test_a_command_that_is_none(
 
 
 @pytest.mark.parametrize("asked", ["house", "hous.toml", "garden/house.toml", "garden/huose", "garden/house"])
-def test_a_misspelt_file_is_told_which_stands_beside(
+def test_misspelt_file_name_gets_a_suggestion(
     asked: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Files in the folder that was named, as the ending that was left away: nothing is run in their place."""
+    """From the folder that was named, also for a missing suffix; the suggested file is not run."""
     monkeypatch.chdir(tmp_path)
     there = Path(asked).parent / "house.toml"
     if asked == str(there):
@@ -305,10 +305,10 @@ def test_a_misspelt_file_is_told_which_stands_beside(
         (["respond", "--model", "dem-dynamic"], {"load__live": None, "load__history": QUAKE}),
     ],
 )
-def test_a_scene_that_a_model_refuses_leaves_no_folder(
+def test_scene_refused_by_a_model_leaves_no_output_folder(
     arguments: list[str], changes: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """As joints without a stiffness, which only the model asks for; a folder that was there stays."""
+    """For example joints without a stiffness, which only some models need; an existing folder is kept."""
     scene = write_toml(content(**changes), tmp_path / "wall.toml")
     line = [*arguments, str(scene), "--out"]
     assert command([*line, str(tmp_path / "new" / "result")]) == 2
@@ -321,7 +321,7 @@ def test_a_scene_that_a_model_refuses_leaves_no_folder(
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["old", "wall.toml"]
 
 
-def test_an_output_folder_that_cannot_be_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_impossible_output_folder_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     for arguments in (["run", "panel-01", "--model", "limit"], ["compare", "panel-01"]):
         assert command([*arguments, "--out", str(tmp_path / "file" / "folder")]) == 2
@@ -330,8 +330,8 @@ def test_an_output_folder_that_cannot_be_is_one_line(tmp_path: Path, capsys: pyt
         assert printed.err.count("\n") == 1
 
 
-def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None:
-    """Through the console script, as a script outside the project would call it."""
+def test_console_script_returns_the_exit_code(tmp_path: Path) -> None:
+    """With the installed console script, called as from outside the project."""
     script = Path(sys.executable).parent / "runningbond"
     done = subprocess.run([script, "run", "panel-01", "--model", "homog"], capture_output=True, text=True, check=False)
     assert done.returncode == 0
@@ -351,7 +351,7 @@ def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None
         ([], "needs the ground and at least one block"),
     ],
 )
-def test_a_drawing_that_is_no_wall(
+def test_invalid_drawing_is_refused(
     outlines: list[list[tuple[float, float]]], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     ground = [(-500.0, -50.0), (700.0, -50.0), (700.0, 0.0), (-500.0, 0.0)]
@@ -368,7 +368,7 @@ def test_a_drawing_that_is_no_wall(
 
 @pytest.mark.parametrize("opposite", ["left", [-1.0, 0.0]])
 def test_live_loads_that_cancel_are_refused(opposite: Any) -> None:
-    """They would be self-locking to every model; what is left of them moves no block."""
+    """Every model would report self-locking; opposite point loads on different blocks are accepted."""
     loads = [{"kind": "lateral"}, {"kind": "lateral", "direction": opposite}]
     with pytest.raises(SceneError, match=r"load\.live: must not cancel out on every block"):
         panel(load__live=loads)

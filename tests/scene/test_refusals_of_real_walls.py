@@ -1,4 +1,4 @@
-"""Bad input in the keys of real walls: one clear line, exit code 2, nothing written."""
+"""Invalid materials, assignments, loads, settlements, ties and beams: one clear line, exit code 2, no output."""
 
 import math
 from pathlib import Path
@@ -119,7 +119,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live(SINK | {"amplitudes": [1, 0]}), "load.live[0].amplitudes[1] = 0.0: must not be zero"),
         (live(SINK | {"amplitudes": [1], "cycles": 1.5}), "load.live[0].cycles = 1.5: must be a whole number"),
         (live(SINK | {"amplitudes": [1], "rate": 1e-3}), "load.live[0].rate = 0.001: is not a key"),
-        (live(SINK | {"path": [1, -1]}), "load.live settlement, along a path: is not taken by model limit"),
+        (live(SINK | {"path": [1, -1]}), "load.live settlement, along a path: is not supported by model limit"),
         ({"load__live": [SINK, {"kind": "lateral"}]}, "load.live: must be the settlement alone"),
         (live(SINK) | {"support__kind": "corners"}, "load.live: needs support.kind"),
         # ties
@@ -173,7 +173,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         ({"beam": {"height": 0.2, "drive": {"displacement": [0.01, 0]}}}, "load.live: must be left out where the"),
     ],
 )  # fmt: skip
-def test_a_scene_that_is_no_real_wall(
+def test_invalid_scene_is_refused(
     changes: dict[str, Any], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     scene = write_toml(content(**changes), tmp_path / "wall.toml")
@@ -186,8 +186,8 @@ def test_a_scene_that_is_no_real_wall(
     assert not out.exists()
 
 
-def test_a_protocol_is_the_way_to_its_turning_points() -> None:
-    """To and fro, in so many cycles of each amplitude, and back; a negative one begins on the other side."""
+def test_amplitudes_and_cycles_become_turning_points() -> None:
+    """Each amplitude is repeated for its cycles, then back to zero; a negative one begins on the other side."""
     drive = {"amplitudes": [1e-3, -2e-3], "cycles": 2, "at": 0.8}
     scene = panel(**beam(drive=drive))
     assert scene.beam is not None

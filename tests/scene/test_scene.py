@@ -1,4 +1,4 @@
-"""Blocks and joints come out of geometry right, wherever they came from."""
+"""Blocks and joints are correct for geometry from any source: patterns, TOML files, drawings, Python."""
 
 import math
 import os
@@ -52,7 +52,7 @@ def rotated(points: Array, angle: float) -> Array:
     x=st.floats(-100, 100),
     y=st.floats(-100, 100),
 )
-def test_rectangle_has_its_textbook_moments_wherever_it_lies(
+def test_area_moments_of_a_rectangle_at_any_position_and_rotation(
     width: float, height: float, angle: float, x: float, y: float
 ) -> None:
     """A = b h, J = b h (b² + h²) / 12 about the centre, for any position and rotation."""
@@ -64,7 +64,7 @@ def test_rectangle_has_its_textbook_moments_wherever_it_lies(
     assert blocks.polar_moment[0] == pytest.approx(width * height * (width**2 + height**2) / 12, rel=1e-8)
 
 
-def test_triangle_has_its_textbook_moments() -> None:
+def test_area_moments_of_a_triangle() -> None:
     """Right triangle with legs 3 and 2: J = b h (b² + h²) / 36 about its centroid at a third of the legs."""
     blocks = Blocks.from_polygons([np.array([[0.0, 0], [3, 0], [0, 2]])])
     assert blocks.area[0] == pytest.approx(3)
@@ -80,12 +80,12 @@ def test_triangle_has_its_textbook_moments() -> None:
         ([[0, 0], [1, 1], [1, 0], [0, 1]], "encloses no area"),  # crossing itself
     ],
 )
-def test_polygons_that_are_no_blocks_are_refused(corners: list[list[float]], fault: str) -> None:
+def test_degenerate_polygons_are_refused(corners: list[list[float]], fault: str) -> None:
     with pytest.raises(SceneError, match=fault):
         Blocks.from_polygons([np.array(corners, dtype=float)]).check()
 
 
-def test_a_pentagram_crosses_itself_though_it_only_turns_left() -> None:
+def test_self_crossing_polygon_without_right_turns_is_refused() -> None:
     angle = 2 * np.pi * 2 * np.arange(5) / 5
     with pytest.raises(SceneError, match="crosses or touches itself"):
         Blocks.from_polygons([np.column_stack([np.cos(angle), np.sin(angle)])]).check()
@@ -94,7 +94,7 @@ def test_a_pentagram_crosses_itself_though_it_only_turns_left() -> None:
 # --- joints --------------------------------------------------------------------------------------------------
 
 
-def test_running_bond_has_the_joints_of_the_textbook() -> None:
+def test_joints_of_running_bond() -> None:
     """6 × 12 panel, flush: 6.5 blocks a course on average; every block meets two above and two below."""
     scene = panel()
     assert scene.wall.sum() == 6 * 6 + 6 * 7
@@ -115,9 +115,7 @@ def test_running_bond_has_the_joints_of_the_textbook() -> None:
     st.floats(-3, 3),
 )
 @settings(max_examples=60)
-def test_joints_are_the_shared_edges_whatever_the_pattern_and_rotation(
-    pattern: list[list[float]], angle: float
-) -> None:
+def test_joints_are_the_shared_edges_for_any_pattern_and_rotation(pattern: list[list[float]], angle: float) -> None:
     """Total joint length equals the shared perimeter counted cell by cell on the half-block lattice."""
     solid = [[w for w in course if w > 0] for course in pattern]
     if not all(solid):
@@ -139,8 +137,8 @@ def test_joints_are_the_shared_edges_whatever_the_pattern_and_rotation(
     assert joints.length.sum() == pytest.approx(bed + head, abs=1e-9)
 
 
-def test_joint_runs_along_the_boundary_of_its_first_block() -> None:
-    """So that the normal, the tangent turned by −90°, points from block a to block b."""
+def test_joint_normal_points_from_its_first_to_its_second_block() -> None:
+    """A joint runs along block a's boundary, so its normal, the tangent turned by −90°, points to block b."""
     for scene in (panel(), courses([[1, 1], [0.5, 1, 0.5]])):
         a, b = scene.joints.block.T
         run = scene.joints.ends[:, 1] - scene.joints.ends[:, 0]
@@ -163,7 +161,7 @@ def test_blocks_that_almost_touch_are_in_contact(shift: float) -> None:
     assert len(find_joints(Blocks.from_polygons([block, block + [0, 0.1 + shift]]))) == 1
 
 
-def test_blocks_apart_by_more_than_the_tolerance_are_not() -> None:
+def test_blocks_farther_apart_than_the_tolerance_are_not_in_contact() -> None:
     block = np.array([[0.0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]])
     assert len(find_joints(Blocks.from_polygons([block, block + [0, 0.1 + 1e-4]]))) == 0
 
@@ -180,8 +178,8 @@ def test_overlapping_blocks_are_refused(move: list[float]) -> None:
         find_joints(Blocks.from_polygons([block, block + move]))
 
 
-def test_blocks_of_very_different_size_meet() -> None:
-    """A block on another a hundred times its size."""
+def test_blocks_of_very_different_size_share_a_joint() -> None:
+    """A block on another one a hundred times as large."""
     large = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
     small = np.array([[5.0, 10], [5.1, 10], [5.1, 10.1], [5, 10.1]])
     assert find_joints(Blocks.from_polygons([large, small])).length == pytest.approx([0.1])
@@ -207,7 +205,7 @@ def test_toothed_ends_leave_the_half_blocks_out() -> None:
     assert panel(wall__ends="toothed").wall.sum() == 6 * 6 + 6 * 5
 
 
-def test_half_first_course_is_the_same_wall_a_course_lower() -> None:
+def test_half_first_course_equals_the_wall_without_its_lowest_course() -> None:
     full = panel(wall__height=0.78).blocks
     half = panel(wall__first_course="half").blocks
     upper = full.centroid[: full.first.size - 2][full.centroid[:-1, 1] > 0.06]
@@ -231,8 +229,8 @@ def test_corners_hold_the_first_course_at_its_ends(kind: str, held: int) -> None
 
 
 @pytest.mark.parametrize("higher", [0, 1])
-def test_a_first_course_that_rounding_left_uneven_is_held_at_both_ends(higher: int) -> None:
-    """A millionth of a millimetre between its two blocks: one of them alone was no course."""
+def test_corner_supports_ignore_rounding_in_the_first_course(higher: int) -> None:
+    """Its two blocks differ in level by a millionth of a millimetre; both ends must be held, not those of one block."""
     off = 1e-9 * np.eye(2)[higher]
     outlines = [np.array([[x, y], [x + 0.4, y], [x + 0.4, 0.2], [x, 0.2]]) for x, y in ((0.0, off[0]), (0.4, off[1]))]
     scene = build_scene(
@@ -247,8 +245,8 @@ def test_a_first_course_that_rounding_left_uneven_is_held_at_both_ends(higher: i
     assert scene.pins.point == pytest.approx(np.array([[0.0, off[0]], [0.0, off[0]], [0.8, off[1]], [0.8, off[1]]]))
 
 
-def test_a_beam_lies_on_what_is_level_of_a_wall_s_top() -> None:
-    """A stone with a chamfered shoulder bears it on its flat alone."""
+def test_beam_lies_on_the_level_part_of_the_top() -> None:
+    """A stone with a chamfered shoulder carries it on its level top only."""
     stone = Blocks.from_polygons([np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.2], [0.7, 0.5], [0.0, 0.5]])])
     assert Beam(height=0.1).outline(stone).tolist() == [[0.0, 0.5], [0.7, 0.5], [0.7, 0.6], [0.0, 0.6]]
 
@@ -282,7 +280,7 @@ def test_tensile_strength_is_the_apex_unless_given() -> None:
     assert panel(joint__cohesion=1e5, joint__tensile_strength=3e4).joint.tension == 3e4
 
 
-MATERIALS: list[tuple[Callable[[], Any], str]] = [
+INVALID_OBJECTS: list[tuple[Callable[[], Any], str]] = [
     (lambda: BlockMaterial(-1.0), "block.density = -1.0: must be a number above 0"),
     (lambda: BlockMaterial(1e200), "block.density = 1e+200: must be a number above 0, of a size from 1e-100 to 1e+100"),
     (lambda: BlockMaterial(1.0, math.inf), "block.young = inf: must be a number above 0"),
@@ -306,20 +304,20 @@ MATERIALS: list[tuple[Callable[[], Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("made", "said"), MATERIALS)
-def test_python_refuses_what_a_file_may_not_say(made: Callable[[], Any], said: str) -> None:
+@pytest.mark.parametrize(("made", "said"), INVALID_OBJECTS)
+def test_python_refuses_invalid_values_as_files_do(made: Callable[[], Any], said: str) -> None:
     with pytest.raises(SceneError) as refused:
         made()
     assert said in str(refused.value)
     assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
 
 
-def test_the_same_words_are_the_same_joint_in_python_and_in_a_file() -> None:
+def test_joint_material_is_the_same_in_python_and_in_a_file() -> None:
     assert JointMaterial(0.6, cohesion=1e5) == panel(joint__cohesion=1e5).joint
     assert JointMaterial(0.6, cohesion=1e5).tension == pytest.approx(1e5 / 0.6)
 
 
-def test_the_apex_goes_with_the_friction_and_a_strength_that_was_given_stays() -> None:
+def test_default_tensile_strength_follows_friction_but_a_given_one_does_not() -> None:
     given = JointMaterial(0.6, 1e5, tensile_strength=1e5)
     assert replace(JointMaterial(0.6, 1e5), friction=0.8).tension == pytest.approx(1e5 / 0.8)
     assert replace(given, friction=0.8).tension == 1e5
@@ -333,7 +331,7 @@ def test_a_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
     assert read_scene(path).wall.sum() == 78
 
 
-def test_title_is_the_file_name_where_there_is_none(tmp_path: Path) -> None:
+def test_title_defaults_to_the_file_name(tmp_path: Path) -> None:
     assert read_scene(write_toml(content(title=None), tmp_path / "tower.toml")).title == "tower"
 
 
@@ -349,7 +347,7 @@ GROUND = [(-500.0, -50.0), (700.0, -50.0), (700.0, 0.0), (-500.0, 0.0)]
 
 
 def test_a_drawing_is_read_in_its_units_with_the_lowest_outline_as_ground(tmp_path: Path) -> None:
-    """Clockwise outlines and corners in the middle of a side are set right."""
+    """Clockwise outlines are reversed, corners in the middle of a straight side are removed."""
     lower = [(0.0, 0.0), (0.0, 100.0), (200.0, 100.0), (200.0, 0.0), (90.0, 0.0)]
     upper = [(0.0, 100.0), (200.0, 100.0), (200.0, 200.0), (0.0, 200.0)]
     drawing(tmp_path / "wall.dxf", [upper, GROUND, lower])
@@ -361,8 +359,8 @@ def test_a_drawing_is_read_in_its_units_with_the_lowest_outline_as_ground(tmp_pa
     assert scene.blocks.area[:2] == pytest.approx([0.02, 0.02])
 
 
-def test_a_mirrored_outline_is_where_it_is_drawn(tmp_path: Path) -> None:
-    """CAD programs mirror a polyline by turning its axes; its corners in the world do not change."""
+def test_mirrored_outline_keeps_its_position(tmp_path: Path) -> None:
+    """CAD programs mirror a polyline by turning its axes (extrusion); the corners in the world stay."""
     plain, turned = tmp_path / "plain.dxf", tmp_path / "turned.dxf"
     outline = [(0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)]
     drawing(plain, [GROUND, outline])
@@ -388,7 +386,7 @@ def test_a_mirrored_outline_is_where_it_is_drawn(tmp_path: Path) -> None:
         ([GROUND, [(0.0, 5.0), (200.0, 5.0), (200.0, 100.0), (0.0, 100.0)]], True, "floating"),
     ],
 )
-def test_drawings_that_are_no_wall_are_refused(
+def test_invalid_drawings_are_refused(
     tmp_path: Path, outlines: list[list[tuple[float, float]]], close: bool, fault: str
 ) -> None:
     drawing(tmp_path / "wall.dxf", outlines, close=close)
@@ -403,7 +401,7 @@ def read_drawn(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("binary", [True, False])
-def test_a_drawing_that_was_cut_off_is_refused(tmp_path: Path, binary: bool) -> None:
+def test_truncated_drawing_is_refused(tmp_path: Path, binary: bool) -> None:
     document = ezdxf.new()  # type: ignore[attr-defined]
     for outline in (GROUND, [(0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)]):
         document.modelspace().add_lwpolyline(outline, close=True)
@@ -417,7 +415,7 @@ def test_a_drawing_that_was_cut_off_is_refused(tmp_path: Path, binary: bool) -> 
         assert "\n" not in str(refused.value)
 
 
-def test_a_drawing_that_is_a_pipe_a_device_or_a_folder_is_not_read(tmp_path: Path) -> None:
+def test_drawing_must_be_a_regular_file(tmp_path: Path) -> None:
     made: list[Callable[[Path], Any]] = [os.mkfifo, Path.mkdir, lambda path: path.symlink_to("/dev/zero")]
     for make in made:
         make(tmp_path / "wall.dxf")
@@ -427,8 +425,8 @@ def test_a_drawing_that_is_a_pipe_a_device_or_a_folder_is_not_read(tmp_path: Pat
 
 
 @pytest.mark.parametrize("last", [0.1, 0.1001, 0.15])
-def test_half_blocks_stay_whole_whatever_the_heights_of_the_courses(last: float) -> None:
-    """Blocks of three quarters of the nominal width and less do not split, in courses that are alike or not."""
+def test_narrow_blocks_are_not_split_for_any_course_heights(last: float) -> None:
+    """Blocks of at most 3/4 of the nominal width get no inner joint, in courses of equal or unequal height."""
     wall = {"block_width": 0.2, "thickness": 0.1, "courses": [[1, 1], [0.5, 1, 0.5], [0.75, 1, 0.25]]}
     table = content(inner_joint={"friction": 0.6, "cohesion": 1e5})
     table["wall"] = wall | {"course_heights": [0.1, 0.1, last]}

@@ -1,4 +1,4 @@
-"""The JSON schema of scene files: it knows what the reader knows, takes what that takes, and refuses what is wrong."""
+"""The JSON schema of scene files has the reader's keys, accepts what the reader accepts, and refuses what is wrong."""
 
 import ast
 import json
@@ -25,9 +25,9 @@ SCHEMA = scene_schema()
 
 READERS = {"outlines", "value", "required", "table", "optional_table", "tables_by_name", "list_of_tables", "number"}
 READERS |= {"optional_number", "text", "choice", "vector", "rows"}
-IN_PYTHON_ALONE = {"law"}
-CHOSEN = {"between", "blocks", "layer"}
-"""Keys of ``assign`` that its reader goes through in a loop."""
+NOT_IN_FILES = {"law"}
+LOOP_KEYS = {"between", "blocks", "layer"}
+"""Keys of ``assign`` that its reader reads in a loop, not by literal arguments."""
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def properties(schema: Any) -> Iterator[str]:
 
 
 def keys_of_the_reader() -> set[str]:
-    """First arguments of a table's methods in the source, and the fields with ranges of the classes it fills."""
+    """Keys in the source: first arguments of `Table` methods, and fields with ranges of the classes they fill."""
     found: set[str] = set()
     for path in (ROOT / "runningbond" / "scene").rglob("*.py"):
         module: dict[str, Any] = {}
@@ -65,10 +65,10 @@ def keys_of_the_reader() -> set[str]:
     return found | {key for kind in ("body", "point") for key in get_type_hints(KINDS[kind])}
 
 
-def test_every_key_that_the_reader_knows_is_in_the_schema() -> None:
+def test_every_key_of_the_reader_is_in_the_schema() -> None:
     known = keys_of_the_reader()
     assert {"friction", "poisson", "opening", "orientation", "yield", "acceleration", "growth", "preload"} <= known
-    assert set(properties(SCHEMA)) | IN_PYTHON_ALONE == known | CHOSEN | {"wall", "block", "joint", "support", "load"}
+    assert set(properties(SCHEMA)) | NOT_IN_FILES == known | LOOP_KEYS | {"wall", "block", "joint", "support", "load"}
 
 
 def test_every_kind_of_load_pulse_and_support_is_in_the_schema() -> None:
@@ -80,7 +80,7 @@ def test_every_kind_of_load_pulse_and_support_is_in_the_schema() -> None:
     assert load["history"]["properties"]["pulse"]["properties"]["kind"]["enum"] == list(PULSES)
 
 
-def test_the_scenes_that_it_is_made_of_are_read_but_for_files_that_are_not_there() -> None:
+def test_scenes_behind_the_schema_are_read_unless_files_are_missing() -> None:
     refused = []
     for scene in SCENES:
         try:
@@ -96,7 +96,7 @@ def test_shipped_scenes_and_examples_are_valid(path: Path, validator: Any) -> No
     validator.validate(tomllib.loads(path.read_text(encoding="utf-8")))
 
 
-def test_what_the_reader_takes_is_valid(validator: Any) -> None:
+def test_scenes_accepted_by_the_reader_are_valid(validator: Any) -> None:
     for scene in (*({**PLAIN, **one} for one in SCENES), *map(random_scene, range(60))):
         validator.validate(scene)
 
@@ -146,14 +146,14 @@ WRONG: list[dict[str, Any]] = [
 
 
 @pytest.mark.parametrize("changes", WRONG, ids=lambda changes: next(iter(changes)))
-def test_wrong_scenes_are_not_valid_and_the_reader_refuses_them_too(changes: dict[str, Any], validator: Any) -> None:
+def test_wrong_scenes_are_refused_by_schema_and_reader(changes: dict[str, Any], validator: Any) -> None:
     scene = content(**changes)
     assert not validator.is_valid(scene)
     with pytest.raises(SceneError):
         scene_from_dict(scene)
 
 
-def test_the_command_prints_it_and_nothing_else(capsys: pytest.CaptureFixture[str], validator: Any) -> None:
+def test_schema_command_prints_the_schema(capsys: pytest.CaptureFixture[str], validator: Any) -> None:
     assert command(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == SCHEMA
     validator.check_schema(SCHEMA)

@@ -1,4 +1,4 @@
-"""Grounds that are cut by the boxes of settlements."""
+"""Settlements: cutting of the ground by their boxes, motion of supports and paths."""
 
 import math
 from typing import Any
@@ -16,7 +16,7 @@ from .drafting import closed, dxf, tables
 
 
 def piers(tmp_path: Any, at: float, box: float) -> Scene:
-    """Two mortared piers on a ground of two pieces that meet at a place; it sinks from the left side of a box on."""
+    """Two mortared piers on two pieces of ground that meet at x = `at`; the ground right of x = `box` sinks."""
     x = 1e3 * at
     blocks = [box_of(0.0, 0.0, 400.0, 300.0), box_of(400.02, 0.0, 800.0, 300.0)]
     grounds = [box_of(-200.0, -100.0, x, 0.0), box_of(x, -100.0, 1000.0, 0.0)]
@@ -29,8 +29,8 @@ def piers(tmp_path: Any, at: float, box: float) -> Scene:
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-5, -1e-5])
-def test_a_box_a_hair_beside_an_edge_of_the_ground_is_at_that_edge(off: float, tmp_path: Any) -> None:
-    """No sliver of ground: contacts reach as far, and the wall bears the same."""
+def test_box_within_tolerance_of_a_ground_edge_snaps_to_it(off: float, tmp_path: Any) -> None:
+    """It cuts no sliver of ground; the contact tolerance and the multiplier stay the same."""
     exact, beside = (piers(tmp_path, 0.40001, 0.40001 + x) for x in (0.0, off))
     assert len(beside.blocks) == 4
     assert beside.blocks.tolerance == exact.blocks.tolerance
@@ -40,13 +40,13 @@ def test_a_box_a_hair_beside_an_edge_of_the_ground_is_at_that_edge(off: float, t
 
 
 @pytest.mark.parametrize("at", [0.3, 0.5, 0.7, 0.1 + 0.2])
-def test_rounding_of_units_cuts_no_sliver(at: float, tmp_path: Any) -> None:
+def test_rounding_of_units_cuts_no_sliver_of_ground(at: float, tmp_path: Any) -> None:
     assert len(piers(tmp_path, at, at).blocks) == 4
 
 
 @pytest.mark.parametrize("width", [0.1, 0.2, 0.3, 0.4, 0.6, 0.7])
-def test_a_block_with_its_middle_on_a_side_of_a_box_stays_on_whichever_side(width: float) -> None:
-    """Of eight that are held, the second to the seventh in turn, counted in decimal numbers."""
+def test_fixed_block_centred_on_a_box_side_does_not_move(width: float) -> None:
+    """The second to the seventh of eight fixed blocks in turn, with decimal coordinates that are rounded."""
     size = {"length": round(8 * width, 9), "height": 0.6, "block_width": width, "block_height": 0.3, "thickness": 0.1}
     for number in range(1, 7):
         middle, moving = round((number + 0.5) * width, 9), []
@@ -58,8 +58,8 @@ def test_a_block_with_its_middle_on_a_side_of_a_box_stays_on_whichever_side(widt
 
 
 @pytest.mark.parametrize(("bottom", "top"), [(-1.0, 0.0), (0.3, 1.0)])
-def test_a_box_that_ends_below_held_blocks_or_begins_above_them_moves_none(bottom: float, top: float) -> None:
-    """However far it reaches sideways: what only touches it stays."""
+def test_box_that_only_touches_fixed_blocks_is_refused(bottom: float, top: float) -> None:
+    """At their bottom or top, however far it extends sideways."""
     size = {"length": 1.6, "height": 0.6, "block_width": 0.4, "block_height": 0.3, "thickness": 0.1}
     live = {"kind": "settlement", "box": [[0.1, bottom], [9.0, top]], "by": [0.0, -1e-3]}
     with pytest.raises(SceneError, match="holds no ground that bears a block"):
@@ -67,7 +67,7 @@ def test_a_box_that_ends_below_held_blocks_or_begins_above_them_moves_none(botto
 
 
 @pytest.mark.parametrize("top", [0.01, 0.15, 0.3, 1.0])
-def test_a_held_block_moves_however_much_of_its_height_a_box_holds(top: float) -> None:
+def test_fixed_block_moves_for_any_overlap_in_height(top: float) -> None:
     size = {"length": 1.6, "height": 0.6, "block_width": 0.4, "block_height": 0.3, "thickness": 0.1}
     live = {"kind": "settlement", "box": [[-1.0, -1.0], [0.7, top]], "by": [0.0, -1e-3]}
     scene = panel(wall=size, support__kind="fixed-first-course", load__live=live)
@@ -75,8 +75,8 @@ def test_a_held_block_moves_however_much_of_its_height_a_box_holds(top: float) -
 
 
 @pytest.mark.parametrize("side", [0.65, 0.75, 0.85, 0.95, 1.05])
-def test_a_held_block_that_may_crack_moves_whole_or_stays(side: float) -> None:
-    """Its halves move where it would, whole: nothing else may part what is as strong as can be."""
+def test_halves_of_a_fixed_block_move_together(side: float) -> None:
+    """They move exactly if the uncut block would; otherwise the settlement would tear a joint of any strength."""
     size = {"length": 1.6, "height": 0.4, "block_width": 0.4, "block_height": 0.2, "thickness": 0.1}
     live = {"kind": "settlement", "box": [[side, -1.0], [9.0, 0.2]], "by": [0.0, -1e-3]}
     inner = {"friction": 0.6, "cohesion": 1e9}
@@ -91,8 +91,8 @@ def test_a_held_block_that_may_crack_moves_whole_or_stays(side: float) -> None:
 
 
 @pytest.mark.parametrize(("side", "moving"), [(0.34, 2), (0.35, 1), (0.43, 1)])
-def test_a_slanting_block_that_may_crack_moves_where_its_centroid_does(side: float, moving: int) -> None:
-    """Sides of 1 m and 0.2 m, 0.3 m apart, have it at x = 31 / 90; that of the larger half counts for more."""
+def test_halves_of_a_trapezoid_move_if_its_centroid_is_in_the_box(side: float, moving: int) -> None:
+    """For sides of 1 m and 0.2 m, 0.3 m apart, it is at x = 31 / 90; the halves are weighted by their areas."""
     outlines = [
         [[0, 0], [1, 0], [0.2, 0.3], [0, 0.3]],
         [[1, 0], [1.6, 0], [1.6, 0.3], [1, 0.3]],
@@ -105,10 +105,10 @@ def test_a_slanting_block_that_may_crack_moves_where_its_centroid_does(side: flo
 
 
 @pytest.mark.parametrize("right", [-0.5, 0.0, 1.0])
-def test_ground_that_rises_above_a_box_stays_where_it_is(right: float, tmp_path: Any) -> None:
-    """A terrace sinks beneath one of two like piers, and bears half of their weight; the bank with the other one stays.
+def test_ground_above_a_settlement_box_does_not_move(right: float, tmp_path: Any) -> None:
+    """A terrace sinks beneath one of two equal piers and carries half of their weight; the bank with the other stays.
 
-    However far under the bank the box reaches: with its middle in the box the whole ground sank, and bore all of it.
+    However far the box extends under the bank: with its middle in the box the whole ground once sank and carried all.
     """
     blocks = [box_of(-1000.0, -500.0, -700.0, -200.0), box_of(0.0, 0.0, 300.0, 300.0)]
     ground = [(-1200, -900), (1500, -900), (1500, 0), (-500, 0), (-500, -500), (-1200, -500)]
@@ -121,9 +121,9 @@ def test_ground_that_rises_above_a_box_stays_where_it_is(right: float, tmp_path:
 
 @pytest.mark.parametrize("about", [None, (0.3, -0.7)])
 def test_ground_turns_about_its_point_as_a_rigid_body(about: tuple[float, float] | None) -> None:
-    """That point, or the middle of the box, goes where the whole is moved to; 1 m to its right goes up by the angle.
+    """That point, or by default the centre of the box, moves by `by`; a point 1 m to its right also rises by the angle.
 
-    What stays does not turn. The load is read on top of the ground, along the way that it goes there.
+    Only the moving ground rotates. The control point is on top of it, in the direction of the motion there.
     """
     by, angle = (0.002, -0.005), 2.0
     live: dict[str, Any] = {"kind": "settlement", "box": [[0.8, -3.0], [4.0, 0.5]], "by": by, "rotation_angle": angle}
@@ -133,20 +133,20 @@ def test_ground_turns_about_its_point_as_a_rigid_body(about: tuple[float, float]
     assert len(moving) == 1
     point, turn = np.array(about or (2.4, -1.25)), math.radians(angle)
 
-    def way(place: Any) -> Any:
+    def motion(place: Any) -> Any:
         return carried(scene.blocks, moving, np.array([place]), scene.support_motion)[0]
 
-    assert way(point) == pytest.approx(by, abs=1e-15)
-    assert way(point + [1.0, 0.0]) == pytest.approx([by[0], by[1] + turn], rel=1e-12)
-    assert way(point + [0.0, 1.0]) == pytest.approx([by[0] - turn, by[1]], rel=1e-12)
+    assert motion(point) == pytest.approx(by, abs=1e-15)
+    assert motion(point + [1.0, 0.0]) == pytest.approx([by[0], by[1] + turn], rel=1e-12)
+    assert motion(point + [0.0, 1.0]) == pytest.approx([by[0] - turn, by[1]], rel=1e-12)
     block, at, direction = scene.control_point
     low, high = scene.blocks.extent(int(moving[0]))
     assert (block.tolist(), at.tolist()) == (moving.tolist(), pytest.approx([(low[0] + high[0]) / 2, high[1]]))
-    assert direction * np.hypot(*way(at)) == pytest.approx(way(at), rel=1e-12)
+    assert direction * np.hypot(*motion(at)) == pytest.approx(motion(at), rel=1e-12)
 
 
-def test_ground_is_cut_into_what_moves_and_what_stays(tmp_path: Any) -> None:
-    """At both sides of the box and at its top, however shallow that is: no ground is lost, and none is there twice."""
+def test_ground_is_cut_into_moving_and_fixed_parts(tmp_path: Any) -> None:
+    """It is cut at both sides and at the top of the box, for a shallow box too; the areas add up to the whole."""
     ground = [(-1000, -900), (2000, -900), (2000, 0), (800, 0), (800, 400), (600, 400), (600, 0), (-1000, 0)]
     pier = box_of(100.0, 0.0, 400.0, 300.0)
     path = dxf(tmp_path / "wall.dxf", closed([pier]), closed([ground], layer="ground"), ground=False)
@@ -157,8 +157,8 @@ def test_ground_is_cut_into_what_moves_and_what_stays(tmp_path: Any) -> None:
     assert np.sort(scene.blocks.area[scene.fixed & ~moves]) == pytest.approx([0.2 * 0.3, 0.5 * 0.9, 0.9])
 
 
-def test_a_settlement_goes_one_path() -> None:
-    """Its turning points, or amplitudes with cycles; and what it turns about needs a turn."""
+def test_settlement_path_is_given_in_one_way() -> None:
+    """By turning points, or by amplitudes with cycles; `about` needs `rotation_angle`."""
     live = {"kind": "settlement", "box": [[0.8, -3.0], [4.0, 0.5]], "by": [0.0, -0.01]}
     assert panel(load__live=live | {"amplitudes": [0.5, 1.0]}).settlement.path == (0.5, -0.5, 1.0, -1.0, 0.0)  # type: ignore[union-attr]
     with pytest.raises(SceneError, match="load.live: must have one of path and amplitudes, not both"):

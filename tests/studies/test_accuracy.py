@@ -1,4 +1,4 @@
-"""The study of accuracy against cost: its known answers, its tables, its charts and its page."""
+"""The study of accuracy against cost: its known answers, tables, charts and page."""
 
 import os
 import subprocess
@@ -56,7 +56,7 @@ ROOT = Path(__file__).parents[2]
 
 @given(st.floats(0.01, 10), st.floats(0, 1), st.floats(0.01, 10))
 def test_error_is_the_distance_from_the_interval(low: float, width: float, value: float) -> None:
-    """Zero inside, relative to the nearer end outside, and the same when everything is scaled."""
+    """Zero inside, relative to the nearer end outside, and independent of scale."""
     high = low * (1 + width)
     result = error(value, (low, high))
     if low <= value <= high:
@@ -68,7 +68,7 @@ def test_error_is_the_distance_from_the_interval(low: float, width: float, value
 
 
 @pytest.mark.long
-def test_errors_of_panels_are_from_the_interval_that_limit_analysis_certifies() -> None:
+def test_errors_of_panels_refer_to_the_certified_interval() -> None:
     wall = accuracy_walls()["panel-04"]
     certified = ask("collapse", "limit-nonassociated", wall.scene, {})
     assert certified.status == "collapse"
@@ -79,7 +79,7 @@ def test_errors_of_panels_are_from_the_interval_that_limit_analysis_certifies() 
 # --- the measurement -----------------------------------------------------------------------------------------
 
 
-def test_a_measurement_has_its_answer_its_seconds_and_its_memory() -> None:
+def test_measurement_has_answer_seconds_and_memory() -> None:
     row = measure_apart(measure, ("stack-of-5", "dem-static", "", ""))
     assert row["value"] == pytest.approx(0.46, rel=1e-6)
     assert (row["blocks"], row["known"], row["runs"]) == (5, "exact", 3)
@@ -91,7 +91,7 @@ def test_a_measurement_has_its_answer_its_seconds_and_its_memory() -> None:
     assert not any(part in row["machine"] for part in (os.uname().nodename, str(Path.home())))
 
 
-def test_memory_is_what_a_run_takes_beyond_what_was_held() -> None:
+def test_memory_of_a_run_excludes_what_was_allocated_before() -> None:
     script = (
         "from runningbond.studies.accuracy import measure\nimport numpy as np\nlarge = np.ones(20_000_000); del large\n"
         "held = measure.start_of_memory(); result = np.ones(5_000_000); print(measure.most_memory() - held)"
@@ -122,9 +122,9 @@ def test_limit_analysis_finds_the_exact_multipliers(name: str) -> None:
     ],
 )
 def test_published_multipliers_are_certified_to_their_last_digit(name: str) -> None:
-    """With contacts moved in, the certified load is one, and rounds to what was published.
+    """With contacts moved inwards, one load is certified, and it rounds to the published value.
 
-    Of W3 other searches have certified .34314 as well.
+    For W3 other searches have certified .34314 as well.
     """
     wall = accuracy_walls()[name]
     result = ask("collapse", "limit-nonassociated", wall.scene, {})
@@ -135,8 +135,8 @@ def test_published_multipliers_are_certified_to_their_last_digit(name: str) -> N
 
 
 @pytest.mark.parametrize("name", [name for name, wall in accuracy_walls().items() if name.startswith("cell-1e")])
-def test_a_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
-    """Six modes and more are exact; rigid blocks are too stiff by k_n a / E."""
+def test_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
+    """Six modes or more are exact; rigid blocks are too stiff by k_n a / E."""
     wall = accuracy_walls()[name]
     assert wall.answer is not None
     assert wall.scene.bond is not None
@@ -148,7 +148,7 @@ def test_a_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
         assert result.value == pytest.approx(wall.answer[0] * (1 + excess), rel=1e-9)
 
 
-def test_a_sheared_cell_of_rigid_blocks_has_the_closed_form() -> None:
+def test_sheared_cell_of_rigid_blocks_has_the_closed_form() -> None:
     wall = accuracy_walls()["cell-shear"]
     assert wall.answer is not None
     for model, settings in (("dem-static", {}), ("fem", {"modes": 3}), ("fem", {"modes": 3, "cells": 2})):
@@ -156,14 +156,14 @@ def test_a_sheared_cell_of_rigid_blocks_has_the_closed_form() -> None:
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
-def test_a_block_turned_far_bears_the_tangent_and_small_displacements_do_not_know(model: str) -> None:
+def test_rotated_block_resists_with_the_tangent_only_at_finite_displacements(model: str) -> None:
     wall = accuracy_walls()["turned-block"]
     assert wall.answer is not None
     assert ask("turned block", model, wall.scene, {}).value == pytest.approx(wall.answer[0], rel=1e-4)
     assert ask("turned block", model, wall.scene, {"drive": 100_000}).value == pytest.approx(0.1 / 0.4, rel=1e-3)
 
 
-def test_the_slower_a_wall_is_driven_the_nearer_it_comes() -> None:
+def test_slower_driving_reduces_the_error() -> None:
     wall = accuracy_walls()["stack-of-5"]
     errors = [
         ask("collapse", "dem-dynamic", wall.scene, {"drive": steps}).value / 0.46 - 1  # type: ignore[operator]
@@ -173,8 +173,8 @@ def test_the_slower_a_wall_is_driven_the_nearer_it_comes() -> None:
     assert 0 < errors[-1] < 0.01
 
 
-def test_a_physical_second_of_stiff_blocks_takes_fewer_steps_with_scaled_masses() -> None:
-    """More than ten times fewer at 1000 GPa, and nearly as few as rigid blocks take."""
+def test_mass_scaling_reduces_the_steps_of_a_physical_second() -> None:
+    """By more than a factor of ten at 1000 GPa, and to nearly the number for rigid blocks."""
     wall = stiffness_walls()["stiff-1e12"]
     unscaled = {"mass_scaling": False}
     result = [
@@ -191,10 +191,10 @@ def test_a_physical_second_of_stiff_blocks_takes_fewer_steps_with_scaled_masses(
         assert 0 < one.lower <= one.value <= one.upper
 
 
-# --- what there is to measure --------------------------------------------------------------------------------
+# --- cases of the study --------------------------------------------------------------------------------------
 
 
-def test_every_case_is_measured_once_and_can_be() -> None:
+def test_every_case_is_unique_and_valid() -> None:
     assert len(set(STUDY.cases)) == len(STUDY.cases) > 150
     for _, (name, model, parameter, setting) in STUDY.cases:
         wall, settings = all_walls()[name], settings_of(model, parameter, setting)
@@ -203,7 +203,7 @@ def test_every_case_is_measured_once_and_can_be() -> None:
             assert {*settings} <= {"tolerance", *MODELS[model].parameters}
 
 
-def test_every_parameter_is_varied_somewhere() -> None:
+def test_every_parameter_is_varied() -> None:
     varied = {case[1:] for _, case in STUDY.cases}
     for parameter in PARAMETERS:
         for model in parameter.models:
@@ -212,7 +212,7 @@ def test_every_parameter_is_varied_somewhere() -> None:
         settings_of("limit", "cells", "2")
 
 
-def test_walls_grow_four_times_at_a_time() -> None:
+def test_walls_grow_by_factors_of_four() -> None:
     blocks = [wall.blocks for wall in growth_walls().values()]
     assert np.diff(np.log2(blocks)) == pytest.approx(2, abs=0.2)
     assert (blocks[0], blocks[-1]) == (21, 1176)
@@ -224,7 +224,7 @@ points = st.lists(st.tuples(st.sampled_from([0.1, 0.2, 0.5, 1, 2]), st.sampled_f
 
 
 @given(points)
-def test_nothing_beats_the_pareto_front_and_it_beats_everything_else(result: Sequence[tuple[float, float]]) -> None:
+def test_pareto_front_dominates_all_other_points(result: Sequence[tuple[float, float]]) -> None:
     cost, error = zip(*result, strict=True)
     front = pareto_front(cost, error)
     assert all(np.diff([cost[i] for i in front]) > 0)
@@ -237,7 +237,7 @@ def test_nothing_beats_the_pareto_front_and_it_beats_everything_else(result: Seq
 
 
 def made_up(part: str, case: tuple[str, str, str, str]) -> Row:
-    """A row: cost and error by model and parameter, growth with the power 1.5."""
+    """A made-up row: cost and error depend on model and parameter, growth has the power 1.5."""
     name, model, parameter, setting = case
     wall, place = all_walls()[name], list(MODELS).index(model)
     seconds = (
@@ -253,12 +253,12 @@ def made_up(part: str, case: tuple[str, str, str, str]) -> Row:
 
 
 def table() -> dict[str, list[Row]]:
-    """A whole table made up."""
+    """A complete made-up table."""
     return {name: [made_up(name, case) for case in part.cases] for name, part in STUDY.parts.items()}
 
 
 def changed(rows: Rows, part: str, which: tuple[str, str, str], **entries: object) -> dict[str, list[Row]]:
-    """The rows, with other entries in that of a wall, a model and a parameter."""
+    """The rows with changed entries for one wall, model and parameter."""
     return {
         name: [
             row | entries if name == part and (row["wall"], row["model"], row["parameter"]) == which else row
@@ -268,15 +268,15 @@ def changed(rows: Rows, part: str, which: tuple[str, str, str], **entries: objec
     }
 
 
-def test_a_model_that_costs_less_than_the_clock_tells_is_judged() -> None:
-    """On a system whose processor clock is coarse, `homog` takes no time at all."""
+def test_model_with_zero_measured_time_is_listed() -> None:
+    """On systems with a coarse processor clock, `homog` takes zero time."""
     free = {"cpu_s": 0.0, "ratio": 0.0}
     rows = {name: [row | free if row["model"] == "homog" else row for row in own] for name, own in table().items()}
     assert "homog" in [row[1] for row in models_table(rows).rows]
 
 
-def test_the_cheapest_within_a_tolerance_is_found() -> None:
-    """Errors 0.067, 0.022, 0.0074, … at ever greater cost; the model that certified a panel counts as within there."""
+def test_cheapest_model_within_a_tolerance_is_found() -> None:
+    """Errors 0.067, 0.022, 0.0074, … at rising cost; a model counts as exact on panels that it certified itself."""
     result = records(table(), VARIED)
     everything = tuple(MODELS)
     for tolerance, expected in ((0.1, "limit"), (0.05, "limit-nonassociated"), (0.01, "dem-static")):
@@ -289,21 +289,21 @@ def test_the_cheapest_within_a_tolerance_is_found() -> None:
 
 
 @pytest.mark.parametrize("status", ["undecided", TOO_LONG])
-def test_a_wall_without_a_number_is_named_and_keeps_a_model_from_being_cheapest(status: str) -> None:
+def test_model_with_an_unanswered_wall_cannot_be_the_cheapest(status: str) -> None:
     rows = changed(table(), "accuracy", ("wall-w3-inset", "limit", ""), status=status, value=None, error=None)
     assert records(rows)["limit", "", ""].unanswered == ["wall-w3-inset"]
     assert cheapest(records(rows, VARIED), 0.1, ("limit",)) is None
 
 
-def test_growth_has_its_power() -> None:
+def test_growth_exponent_is_recovered() -> None:
     for rows in growth(table()).values():
         assert exponent(rows) == pytest.approx(1.5, abs=1e-9)
 
 
-def test_tables_say_what_the_rows_do() -> None:
+def test_tables_show_the_values_of_the_rows() -> None:
     models = {row[1]: row for row in models_table(table()).rows}
     assert models["limit"][3:5] == ["6.7 %", "6.7 %"]
-    assert models["limit"][6:8] == [str(models["limit"][2]), "0"]  # all of them too high
+    assert models["limit"][6:8] == [str(models["limit"][2]), "0"]  # all errors are too high
     parameters = {tuple(row[:3]): row[3:] for row in parameters_table(table()).rows}
     assert parameters["fem", "joint rule", "Gauss 2"] == ["4", "0.33 %", "0.082 %", "1.5", "costs accuracy", ""]
     assert parameters["fem", "cells", "2"][4] == "cost alone"
@@ -315,13 +315,13 @@ def test_tables_say_what_the_rows_do() -> None:
     assert tables({name: [] for name in STUDY.parts}) == []
 
 
-def test_cases_left_out_are_said_to_be() -> None:
+def test_omitted_cases_are_reported() -> None:
     rows = changed(table(), "growth", ("square-48", "fem", ""), status=TOO_LONG, cpu_s=None)
     assert {row[0]: row[4] for row in growth_table(rows).rows}["fem"] == "left out: too long"
 
 
 def test_rigid_blocks_are_too_stiff_by_the_ratio_of_joint_and_block() -> None:
-    """k_n a / E: 62.5, 6.25 and 0.625 %."""
+    """Stiffness ratio k_n a / E: 62.5, 6.25 and 0.625 %."""
     edges = fits(table())
     assert [edge.theory for edge in edges] == pytest.approx([0.625, 0.0625, 0.00625])
 
@@ -331,7 +331,7 @@ def test_rigid_blocks_are_too_stiff_by_the_ratio_of_joint_and_block() -> None:
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """The page of a table made up, and its charts."""
+    """The page of a made-up table, and its charts."""
     folder = tmp_path_factory.mktemp("study")
     return write_page("study", page(table(), folder), folder, STUDY.name)
 
@@ -347,8 +347,8 @@ def test_charts_are_not_blank(written: list[Path], tmp_path: Path) -> None:
     assert draw_charts(STUDY, {name: [] for name in STUDY.parts}, tmp_path / "none") == []
 
 
-def test_names_hide_neither_each_other_nor_marks(tmp_path: Path) -> None:
-    """Over degrees of freedom all settings of a model stand above each other; their errors lie close together."""
+def test_labels_overlap_neither_each_other_nor_marks(tmp_path: Path) -> None:
+    """Over degrees of freedom, all settings of a model lie above each other with similar errors."""
     rows = table()
     rows["accuracy"] = [
         row | {"error": row["error"] * (1.0 + 2.0 * (k % 7)) if row["parameter"] else row["error"] / 50}
@@ -359,7 +359,7 @@ def test_names_hide_neither_each_other_nor_marks(tmp_path: Path) -> None:
     STUDY.charts[1].draw(figure, rows)
     figure.draw_without_rendering()
     for axes in figure.axes:
-        names = [Text.get_window_extent(text) for text in axes.texts]  # without the lines to marks
+        names = [Text.get_window_extent(text) for text in axes.texts]  # without the leader lines
         assert len(names) > 4
         assert not any(one.overlaps(other) for one, other in combinations(names, 2))
         marks = np.concatenate(
@@ -368,7 +368,7 @@ def test_names_hide_neither_each_other_nor_marks(tmp_path: Path) -> None:
         assert not any(box.contains(*mark) for box in names for mark in marks)
 
 
-def test_the_page_tells_all_of_the_study(written: list[Path]) -> None:
+def test_page_has_all_parts_of_the_study(written: list[Path]) -> None:
     text, html = (path.read_text() for path in written[:2])
     for path in written[2:]:
         assert f"]({path.name})" in text
@@ -381,12 +381,12 @@ def test_the_page_tells_all_of_the_study(written: list[Path]) -> None:
     assert label(("fem", "cells", "2")) == "fem, cells 2"
 
 
-def test_a_study_in_no_process_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_study_with_no_process_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["study", "--jobs", "0"]) == 2
     assert "--jobs" in capsys.readouterr().err
 
 
-def test_a_study_in_a_file_is_refused_before_anything_is_measured(
+def test_study_folder_that_is_a_file_is_refused_before_measuring(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "taken").touch()

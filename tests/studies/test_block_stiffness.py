@@ -1,4 +1,4 @@
-"""What mass scaling leaves as it is, and what one factor for all deformable modes does not."""
+"""What mass scaling preserves, and what one factor for all deformable modes does not."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ from runningbond.studies.walls import INSET
 
 
 @pytest.mark.parametrize("young", [1e10, 1e12])
-def test_one_factor_for_all_modes_reaches_the_step_and_spoils_the_band(young: float) -> None:
-    """Each mode scaled by its own need leaves the lowest frequencies; all by one factor shifts them by a quarter."""
+def test_uniform_mass_scaling_spoils_the_lowest_frequencies(young: float) -> None:
+    """Scaling each mode by its own factor keeps the lowest frequencies; one factor for all shifts them by 25 %."""
     result, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
     none, each = (system_of(result, mass_scaling=on) for on in (False, True))
     uniform = uniformly_scaled(result, none, rigid.interface.frequency_squared)
@@ -29,8 +29,8 @@ def test_one_factor_for_all_modes_reaches_the_step_and_spoils_the_band(young: fl
     assert (all_alike <= exact * (1 + 1e-9)).all()
 
 
-def test_the_step_of_unscaled_blocks_falls_with_the_root_of_their_stiffness() -> None:
-    """To 1 %, for joints still stiffen the softer ones a little. Of scaled blocks it comes to that of rigid ones."""
+def test_unscaled_time_step_falls_with_the_root_of_block_stiffness() -> None:
+    """To 1 %, because joints still stiffen softer blocks slightly. With scaling the step is that of rigid blocks."""
     steps = [
         system_of(modal_wall(wall(E)), mass_scaling=False).interface.frequency_squared ** -0.5 for E in (1e12, 1e13)
     ]
@@ -40,8 +40,8 @@ def test_the_step_of_unscaled_blocks_falls_with_the_root_of_their_stiffness() ->
 
 
 @pytest.mark.parametrize("young", [1e10, pytest.param(1e13, marks=pytest.mark.long)])
-def test_the_multiplier_does_not_depend_on_the_blocks(young: float) -> None:
-    """W1 with joints inset by 20 mm, where it is one number: 0.58558, certified by linear programs."""
+def test_multiplier_does_not_depend_on_block_stiffness(young: float) -> None:
+    """W1 with joints inset by 20 mm, which has a unique load: 0.58558, certified by linear programs."""
     assert INSET == 0.02
     outcome = fem(wall(young))
     assert outcome.lower is not None

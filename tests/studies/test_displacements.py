@@ -1,4 +1,4 @@
-"""Small against finite displacements: a block loses λ as the tangent, and walls about as a block of their height."""
+"""Small and finite displacements: a block loses λ with the tangent, walls like one block of their height."""
 
 import math
 
@@ -29,10 +29,10 @@ def rocking() -> Curves:
     return curves(*scene_of("block"), ALONE)
 
 
-def test_a_block_has_lost_a_share_of_its_resistance_where_theory_says(
+def test_block_loses_resistance_at_the_exact_displacements(
     rocking: Curves,
 ) -> None:
-    """1, 2, 5 and 10 % of it, from λ(θ) = tan(α − θ) with u = h sin θ, to 0.2 %."""
+    """Losses of 1, 2, 5 and 10 %, from λ(θ) = tan(α − θ) with u = h sin θ, to 0.2 %."""
     peak, moved, small, finite = rocking
     assert peak == pytest.approx(0.5, rel=1e-6)
     alpha = math.atan(0.5)
@@ -44,7 +44,7 @@ def test_a_block_has_lost_a_share_of_its_resistance_where_theory_says(
         assert displacement_at(moved, 1 - finite / small, d) == pytest.approx(theory, rel=2e-3)
 
 
-def test_a_block_follows_the_tangent_all_the_way(rocking: Curves) -> None:
+def test_block_resistance_follows_the_tangent(rocking: Curves) -> None:
     _, moved, small, finite = rocking
     theta = np.arcsin(moved * WIDTH / HEIGHT)
     exact = np.tan(math.atan(0.5) - theta)
@@ -57,8 +57,8 @@ def test_a_block_follows_the_tangent_all_the_way(rocking: Curves) -> None:
 @pytest.mark.parametrize(
     ("name", "height"), [("W1", 6 * 0.175), pytest.param("W2", 10 * 0.175, marks=pytest.mark.long)]
 )
-def test_a_wall_loses_about_as_much_as_one_block_of_its_height(name: str, height: float) -> None:
-    """To 15 % from a loss of 2 % on."""
+def test_wall_loses_resistance_like_one_block_of_its_height(name: str, height: float) -> None:
+    """To 15 %, for losses from 2 %."""
     row = measure(name)
     assert row[TALL] * scene_of(name)[1] == pytest.approx(height)
     for moved, theory in zip(MOVED[1:], THEORY[1:], strict=True):

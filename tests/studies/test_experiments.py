@@ -1,4 +1,4 @@
-"""Every experiment: its edges lie where theory has them, and its chart is there."""
+"""Every experiment: its measured edges agree with theory, and its chart is drawn."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ def test_every_case_is_measured_once(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", EXPERIMENTS)
-def test_every_edge_lies_where_theory_has_it(name: str, tmp_path: Path) -> None:
+def test_every_edge_agrees_with_theory(name: str, tmp_path: Path) -> None:
     study = experiment(name)
     rows = run_study(study, tmp_path)
     assert not failures(rows)

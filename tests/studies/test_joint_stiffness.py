@@ -1,4 +1,4 @@
-"""The stiffness of joints: what does not depend on it, and what outcomes say where something does."""
+"""Joint stiffness: what does not depend on it, and what outcomes report if something does."""
 
 from typing import Any
 
@@ -22,20 +22,20 @@ Model = Any
 
 
 @pytest.mark.parametrize("normal", [1e7, 1e9, 1e12])
-def test_blocks_overlap_by_the_weight_above_them(normal: float) -> None:
-    """ρ g H / k_n at the base of a wall as wide above as below: 1800 · 9.81 · 1.05 / k_n."""
+def test_overlap_is_the_weight_above_over_the_stiffness(normal: float) -> None:
+    """ρ g H / k_n at the base of a wall of constant width: 1800 · 9.81 · 1.05 / k_n."""
     depth = at_rest(normal)[OVERLAP]
     assert overlap(wall(normal), normal) * 0.175 == pytest.approx(1800 * 9.81 * 1.05 / normal, rel=1e-9)
     assert depth == pytest.approx(overlap(wall(normal), normal), rel=1e-6)
 
 
-def test_the_conditioning_of_the_static_equations_does_not_depend_on_the_stiffness() -> None:
+def test_condition_of_the_static_equations_does_not_depend_on_stiffness() -> None:
     assert condition(wall(1e14)) == pytest.approx(condition(wall(1e8)), rel=1e-9)
 
 
 @pytest.mark.parametrize("normal", [1e9, 1e11])
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
-def test_inside_the_window_nothing_is_said_and_the_multiplier_stays(model: Model, normal: float) -> None:
+def test_stiffness_within_the_usual_range_changes_nothing_and_gives_no_note(model: Model, normal: float) -> None:
     outcome = model(wall(normal))
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(EXACT, rel=0.005)
@@ -44,8 +44,8 @@ def test_inside_the_window_nothing_is_said_and_the_multiplier_stays(model: Model
 
 @pytest.mark.parametrize(("normal", "deep"), [(1e7, "1.1 %"), (1e6, "11 %")])
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
-def test_soft_joints_are_said_so(model: Model, normal: float, deep: str) -> None:
-    """Blocks sink into each other by a per cent of their size and more; λ hardly minds, but another wall's might."""
+def test_soft_joints_are_reported(model: Model, normal: float, deep: str) -> None:
+    """Blocks overlap by one per cent of their size or more; λ barely changes here, but might for another wall."""
     outcome = model(wall(normal))
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(EXACT, rel=0.01)
@@ -53,15 +53,15 @@ def test_soft_joints_are_said_so(model: Model, normal: float, deep: str) -> None
 
 
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
-def test_a_wall_that_sinks_into_itself_is_not_said_to_fall(model: Model) -> None:
-    """It gives by its own size, and stands: what counts as a fall is more than what its springs give."""
+def test_settlement_into_soft_joints_is_not_taken_for_collapse(model: Model) -> None:
+    """Settling by its own size under dead load is no collapse, and the exact load is still found."""
     outcome = model(wall(1e5))
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(EXACT, rel=0.01)
     assert "joints are too soft" in outcome.message
 
 
-def test_a_budget_that_ends_before_the_fall_says_how_long_it_followed() -> None:
+def test_exhausted_budget_reports_the_simulated_time() -> None:
     scene = wall(1e15)
     outcome = dem_dynamic(scene, budget=20_000)
     assert outcome.status == "undecided"
@@ -69,7 +69,7 @@ def test_a_budget_that_ends_before_the_fall_says_how_long_it_followed() -> None:
     assert f"each load was followed for at most {followed:.2g} s" in outcome.message
 
 
-def test_the_note_turns_where_overlap_and_rounding_pass_their_shares() -> None:
+def test_stiffness_note_appears_at_its_thresholds() -> None:
     size, collapse, unit = 0.2, 0.01, 100.0
     depth, stiffness = SOFT * collapse, STIFF * unit / (EPSILON * collapse)
     assert stiffness_note(0.999 * depth, collapse, size, 0.999 * stiffness, unit) == ""
@@ -77,11 +77,11 @@ def test_the_note_turns_where_overlap_and_rounding_pass_their_shares() -> None:
     assert "too stiff: in displacements" in stiffness_note(0.0, collapse, size, 1.001 * stiffness, unit)
 
 
-def test_rounding_in_too_stiff_joints_is_said() -> None:
+def test_rounding_in_too_stiff_joints_is_reported() -> None:
     assert "joints are too stiff" in dem_static(wall(1e18)).message
 
 
 @pytest.mark.parametrize("name", ["panel-04", "wall-w3", *at_length("point-load-quarter")])
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-def test_nothing_is_said_of_published_walls(name: str, model: str) -> None:
+def test_published_walls_get_no_stiffness_note(name: str, model: str) -> None:
     assert not said_in(run_model(model, published_scene(name), 0.05).message)

@@ -1,4 +1,4 @@
-"""Loaded too fast, a wall bears too much: by how much, against theory."""
+"""Overestimated collapse loads under fast loading, against theory."""
 
 import numpy as np
 import pytest
@@ -17,12 +17,12 @@ from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 
 
 def ramped(wall: str, rates: tuple[float, ...], local: float = LOCAL) -> tuple[Array, Array]:
-    """Rates, and λ at which the wall is seen to fall."""
+    """Loading rates, and the λ at which collapse of the wall is detected."""
     return np.array(rates), np.array([ramp_row(wall, rate, local)["λ"] for rate in rates])
 
 
 def test_inertia_of_blocks_in_their_motion() -> None:
-    """M / F: 1/g of a block that slides; of one that topples, (b² + h²)/3 over (h/2)² g."""
+    """M / F: 1/g for a sliding block; for a toppling one, (b² + h²)/3 over (h/2)² g."""
     assert known_wall(SLIDING).inertia == pytest.approx(1 / 9.81, rel=1e-12)
     b, h = 0.12, 0.24
     assert known_wall(TOPPLING).inertia == pytest.approx((b**2 + h**2) / 3 / (h / 2) ** 2 / 9.81, rel=1e-9)
@@ -36,7 +36,7 @@ def test_limit_analysis_certifies_the_exact_load_of_blocks(wall: str) -> None:
 
 @pytest.mark.parametrize("local", [0.0, 0.5, 0.8])
 @pytest.mark.parametrize("wall", [SLIDING, TOPPLING])
-def test_a_ramp_overshoots_by_its_rate_to_two_thirds(wall: str, local: float) -> None:
+def test_ramp_overshoots_with_its_rate_to_the_power_two_thirds(wall: str, local: float) -> None:
     """λ − λ_c = (6 u r² (M / F) / (1 − α))^{1/3}, whatever the local damping."""
     rate, multiplier = ramped(wall, (1.0, 0.3, 0.1), local)
     known = known_wall(wall).multiplier
@@ -46,8 +46,8 @@ def test_a_ramp_overshoots_by_its_rate_to_two_thirds(wall: str, local: float) ->
 
 
 @pytest.mark.long
-def test_ramps_of_masonry_come_down_to_the_certified_load() -> None:
-    """W1 with rounded corners falls at one load: never below it, and at no speed within three standard errors."""
+def test_ramps_on_a_wall_converge_to_the_certified_load() -> None:
+    """W1 with rounded corners: above its unique load; extrapolated to zero rate, within three standard errors."""
     rate, multiplier = ramped(W1, (0.464, 0.215, 0.1, 0.0464, 0.0215))
     known = known_wall(W1).multiplier
     assert (multiplier > known).all()
@@ -57,14 +57,14 @@ def test_ramps_of_masonry_come_down_to_the_certified_load() -> None:
 
 
 @pytest.mark.parametrize("wall", [SLIDING, TOPPLING])
-def test_pushed_slowly_a_block_shows_its_exact_load(wall: str) -> None:
+def test_slowly_pushed_block_has_its_exact_load(wall: str) -> None:
     known = known_wall(wall).multiplier
     assert push_row(wall, 2000)["λ"] > 1.5 * known
     assert push_row(wall, 256_000)["λ"] == pytest.approx(known, rel=1e-6)
 
 
-def test_pushed_slowly_walls_peak_at_what_is_certified() -> None:
-    """W1: rounded, within 1 % of one number; sharp, inside the interval of certified loads."""
+def test_slowly_pushed_wall_peaks_at_a_certified_load() -> None:
+    """W1: rounded, within 1 % of its unique load; sharp, inside the certified interval."""
     for steps in (512_000, 1_024_000):
         assert push_row(W1, steps)["λ"] == pytest.approx(0.58558, rel=0.01)
     scene = published_scene("wall-w1")
@@ -78,23 +78,23 @@ def test_pushed_slowly_walls_peak_at_what_is_certified() -> None:
 
 
 @pytest.mark.parametrize("loading", [0, 1, LOADING])
-def test_load_steps_do_not_mind_how_fast_the_load_comes_where_it_is_unique(loading: float) -> None:
-    """Not even where it comes at once: the load that is known lies in the bracket."""
+def test_load_steps_bracket_a_unique_load_at_any_loading_rate(loading: float) -> None:
+    """Even if the load is applied at once."""
     row = step_row(W1, loading)
     assert row["λ lower"] <= known_wall(W1).multiplier <= row["λ upper"]
 
 
 @pytest.mark.long
-def test_a_slender_dry_wall_bears_another_load_in_haste() -> None:
-    """Panel-12, loaded four times as fast: more than 5 % more."""
+def test_slender_dry_wall_has_a_higher_load_when_loaded_fast() -> None:
+    """Panel-12, loaded four times as fast: more than 5 % higher."""
     hasty, slow = step_row("panel-12", LOADING / 4), step_row("panel-12", LOADING)
     assert hasty["λ lower"] > 1.05 * slow["λ upper"]
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("first_step", [0.8 * FIRST_STEP, FIRST_STEP, 1.4 * FIRST_STEP])
-def test_a_slender_dry_wall_loaded_slower_still_bears_one_load(first_step: float) -> None:
-    """Panel-12 at a quarter of the suite's speed, in any load steps: 0.077 to 2 %."""
+def test_slender_dry_wall_loaded_slowly_has_one_load(first_step: float) -> None:
+    """Panel-12 at a quarter of the default rate, with any load steps: 0.077 to 2 %."""
     scene = published_scene("panel-12")
     run = quasi_static_run(scene)
     first, criteria = first_step / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)

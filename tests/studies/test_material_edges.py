@@ -1,4 +1,4 @@
-"""What models say at the edges of materials, shapes and sizes."""
+"""Results for extreme materials, shapes and sizes."""
 
 import pytest
 
@@ -10,15 +10,15 @@ from runningbond.studies.stability.material_edges import EXTREMES, SIZES, answer
 
 @pytest.mark.parametrize("model", ["homog", "limit", "limit-nonassociated", "dem-static"])
 @pytest.mark.parametrize("what", EXTREMES)
-def test_models_at_rest_are_right_or_say_that_they_are_not(what: str, model: str) -> None:
+def test_static_models_are_right_or_report_that_they_are_not(what: str, model: str) -> None:
     result = answer(what, model)
     assert result["worth"] != "wrong", result
     assert result["message"]
 
 
 @pytest.mark.parametrize("what", [what for what in EXTREMES if what != "tan φ = 10⁻⁶"])
-def test_rigid_blocks_in_motion_are_right(what: str) -> None:
-    """A metre on a centimetre, too, though it sinks so far into it that joints are said to be too soft."""
+def test_rigid_dynamic_model_is_right(what: str) -> None:
+    """Also for a metre on a centimetre, although it sinks in so far that joints are reported as too soft."""
     result = answer(what, "dem-dynamic")
     assert result["worth"] == "right", result
 
@@ -26,14 +26,14 @@ def test_rigid_blocks_in_motion_are_right(what: str) -> None:
 @pytest.mark.parametrize(
     "what", ["block 1:50", "no equilibrium: overhang", "gap, 0.99 tolerances", "self-locking: one block pinned"]
 )
-def test_deformable_blocks_in_motion_are_right(what: str) -> None:
+def test_deformable_dynamic_model_is_right(what: str) -> None:
     result = answer(what, "fem")
     assert result["worth"] == "right", result
 
 
 @pytest.mark.parametrize("model", [limit, dem_static, dem_dynamic])
-def test_a_dry_wall_has_one_multiplier_in_every_size(model) -> None:  # type: ignore[no-untyped-def]
-    """From 1 µm to 1 km with stiffness along, to rounding."""
+def test_multiplier_of_a_dry_wall_does_not_depend_on_size(model) -> None:  # type: ignore[no-untyped-def]
+    """From 1 µm to 1 km with scaled stiffness, to rounding."""
     small, usual, large = (model(similar(size / 0.48)).lower for size in SIZES)
     assert small == pytest.approx(usual, rel=1e-9)
     assert large == pytest.approx(usual, rel=1e-9)
@@ -50,5 +50,5 @@ def test_a_dry_wall_has_one_multiplier_in_every_size(model) -> None:  # type: ig
         ("unbounded", "unbounded"),
     ],
 )
-def test_answers_read_as_people_write_them(value: float | tuple[float, float] | str, said: str) -> None:
+def test_multipliers_are_printed_readably(value: float | tuple[float, float] | str, said: str) -> None:
     assert in_words(value) == said

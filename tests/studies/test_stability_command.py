@@ -1,4 +1,4 @@
-"""`runningbond stability` tells of every experiment, goes on where it was, and says where theory is not met."""
+"""`runningbond stability` reports every experiment, resumes, and says where theory is not met."""
 
 import os
 import signal
@@ -46,7 +46,7 @@ def broken(beam: str) -> Row:
 
 @pytest.fixture
 def done(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Three experiments that take no time, and a list of the cases that were measured."""
+    """Three instant experiments, and a list of the cases that were measured."""
     names: list[str] = []
 
     def experiment(name: str) -> Study:
@@ -65,9 +65,7 @@ def _experiments(monkeypatch: pytest.MonkeyPatch, experiment: Callable[[str], St
     monkeypatch.setattr("runningbond.studies.stability.experiment", experiment)
 
 
-def test_the_command_tells_of_every_experiment(
-    tmp_path: Path, done: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_command_reports_every_experiment(tmp_path: Path, done: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["stability", "--out", str(tmp_path)]) == 0
     assert done == [f"{name} {which}" for name in THREE for which in ("long", "short")]
     assert "Where each method may be trusted" in capsys.readouterr().out
@@ -83,7 +81,7 @@ def test_the_command_tells_of_every_experiment(
     assert "http" not in page.replace("http-equiv", "")
 
 
-def test_what_is_kept_is_not_done_again(tmp_path: Path, done: list[str]) -> None:
+def test_kept_experiments_are_not_repeated(tmp_path: Path, done: list[str]) -> None:
     assert command(["stability", THREE[1], "--out", str(tmp_path)]) == 0
     assert {name.split()[0] for name in done} == {THREE[1]}
     assert command(["stability", "--out", str(tmp_path)]) == 0
@@ -94,17 +92,17 @@ def test_what_is_kept_is_not_done_again(tmp_path: Path, done: list[str]) -> None
     assert (tmp_path / "stability.md").read_bytes() == first
 
 
-def test_an_edge_that_is_not_where_theory_has_it_leaves_with_3(
+def test_edge_that_contradicts_theory_gives_exit_code_3(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     _experiments(monkeypatch, lambda name: beam(bent, name))
-    for _ in range(2):  # measured, then read
+    for _ in range(2):  # first measured, then read
         assert command(["stability", THREE[0], "--out", str(tmp_path)]) == 3
         assert f"{THREE[0]}: sag: long: measured 1.002, by theory 1" in capsys.readouterr().err
     assert "0.2 %, does not agree" in (tmp_path / "stability.md").read_text()
 
 
-def test_an_experiment_that_breaks_does_not_lose_the_others(
+def test_failing_experiment_does_not_stop_the_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     _experiments(monkeypatch, lambda name: beam(broken if name == THREE[1] else straight, name))
@@ -116,7 +114,7 @@ def test_an_experiment_that_breaks_does_not_lose_the_others(
     assert f"{THREE[1]} ended in an error" in text
 
 
-def test_an_unknown_experiment_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unknown_experiment_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["stability", "time-stop", "--out", str(tmp_path / "new")]) == 2
     printed = capsys.readouterr().err
     assert 'did you mean "time-step"?' in printed
@@ -145,7 +143,7 @@ main(["stability", "--out", sys.argv[2]])
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, *at_length(signal.SIGTERM, signal.SIGKILL)])
-def test_a_command_stopped_in_the_middle_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
+def test_interrupted_command_resumes(how: signal.Signals, tmp_path: Path) -> None:
     def start(pace: str) -> "subprocess.Popen[str]":
         line = [sys.executable, "-c", STOPPED_IN_THE_SECOND, pace, str(tmp_path / "result")]
         return subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

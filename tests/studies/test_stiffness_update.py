@@ -1,4 +1,4 @@
-"""The stiffness update as published: exact on one block, lost on walls, and honest about it."""
+"""The stiffness update as published: exact for one block, failing on walls, and reported as such."""
 
 import numpy as np
 import pytest
@@ -30,15 +30,15 @@ WALLS = ("panel-02", "panel-04", "wall-w2", "wall-w3")
         pytest.param("topples, l_c the whole joint", 2.0, marks=pytest.mark.long),
     ],
 )
-def test_one_block_is_borne_to_its_exact_collapse(what: str, borne: float) -> None:
-    """b/h, μ, and 2 b/h with l_c the whole length of the joint, to 1e-3."""
+def test_one_block_is_followed_to_its_exact_collapse(what: str, borne: float) -> None:
+    """b/h, μ, and 2 b/h if l_c is the whole length of the joint, to 1e-3."""
     row = block_row(what)
     assert row["theory"] == borne
     assert row["measured"] == pytest.approx(borne, rel=1e-3)
 
 
-def test_a_block_beyond_its_collapse_is_singular_and_what_follows_is_not_reached() -> None:
-    """Loaded up to 1.25 b/h in ten steps: eight of them are borne."""
+def test_step_beyond_collapse_is_singular_and_ends_the_run() -> None:
+    """Loaded up to 1.25 b/h in ten steps: eight of them converge."""
     row = loaded(one_block(0.5, 2.0, 0.6, 1e11), 1.25 * 0.25, 0.5, 10)
     assert row["fates"] == ["converged"] * 8 + ["singular", "unreached"]
     assert row[BORNE] == pytest.approx(0.8)
@@ -51,8 +51,8 @@ def result() -> dict[tuple[str, int], Row]:
 
 
 @pytest.mark.long
-def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(result: dict[tuple[str, int], Row]) -> None:
-    """A load below the one that limit analysis allows, which `dem_static` bears."""
+def test_no_wall_reaches_the_collapse_load_of_the_robust_variant(result: dict[tuple[str, int], Row]) -> None:
+    """That load, which `dem_static` reaches, is below the bound of limit analysis."""
     for (wall, _), row in result.items():
         associated = limit(published_scene(wall)).upper
         assert associated is not None
@@ -62,15 +62,15 @@ def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(result: dic
 
 
 def test_finer_steps_do_not_help(result: dict[tuple[str, int], Row]) -> None:
-    """In a hundred steps panel-02 gets less far than in ten, and panel-04 and W3 nowhere in either."""
+    """In a hundred steps panel-02 gets less far than in ten; panel-04 and W3 fail at once in both."""
     borne = {which: row[BORNE] for which, row in result.items()}
     assert borne["panel-02", 100] < borne["panel-02", 10]
     assert borne["panel-04", 100] == borne["panel-04", 10] == 0.0
     assert borne["wall-w3", 100] == borne["wall-w3", 10] < 0.0
 
 
-def test_every_tenth_of_the_load_has_its_fate(result: dict[tuple[str, int], Row]) -> None:
-    """A run in steps ends once; what lies beyond is never told as borne."""
+def test_every_tenth_of_the_load_has_a_status(result: dict[tuple[str, int], Row]) -> None:
+    """A stepwise run ends once; load steps beyond are never reported as converged."""
     for (_, steps), row in result.items():
         fates = row["fates"]
         assert len(fates) == 10
@@ -81,8 +81,8 @@ def test_every_tenth_of_the_load_has_its_fate(result: dict[tuple[str, int], Row]
             assert end <= 10 * max(row[BORNE], 0.0) + 1e-9 <= end + 1
 
 
-def test_a_step_may_converge_on_forces_that_break_the_law() -> None:
-    """Equilibrium is kept, and Eq. 3 is not: it was asked of other forces than those that are kept. W1, up to .45."""
+def test_converged_step_may_violate_the_joint_law() -> None:
+    """Equilibrium holds, Eq. 3 does not: it was checked for other forces than those kept. W1, up to .45."""
     wall = resultant_wall(published_scene("wall-w1"))
     force = 0.0 * wall.law.stiffness
     excess = []

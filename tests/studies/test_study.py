@@ -1,4 +1,4 @@
-"""A study keeps each row as it comes, goes on where it was, and reads nothing that it cannot trust."""
+"""A study stores each row as it is measured, resumes, and reads only rows that it can trust."""
 
 import csv
 import io
@@ -32,7 +32,7 @@ CASES = [(1, "short"), (2, "long"), (3, "long")]
 
 
 def measure(load: int, beam: str) -> Row:
-    """A row made up for the test, and a note that it was measured."""
+    """A made-up row, with a record that it was measured."""
     DONE.append((load, beam))
     return {"measured": float(load), "theory": 1.0, "allowed": 1e-3, "sag [m]": 0.5 * load, "curve": [0.0, load]}
 
@@ -68,14 +68,14 @@ words = st.text(st.characters(codec="utf-8", exclude_characters="\r\0"))
 
 
 @given(entries | words, entries | words, st.lists(entries))
-def test_a_table_gives_its_rows_back_to_the_last_bit(one: object, other: object, many: list[object]) -> None:
+def test_table_returns_its_rows_bitwise(one: object, other: object, many: list[object]) -> None:
     row = {"load [N]": 1, "one": one, "other": other, "many": many}
     kept = list(read_csv(csv_text(BEAMS, {("Beams", CASES[0]): row})).values())
     assert kept == [{head: entry for head, entry in row.items() if entry is not None and entry != ""}]
     assert repr(kept[0]["many"]) == repr(many)
 
 
-def test_words_of_cases_are_plain_in_the_table_and_words_again_when_read(tmp_path: Path) -> None:
+def test_case_words_are_unquoted_in_the_table_and_read_as_words(tmp_path: Path) -> None:
     cases = [("2", ""), ("all", "off")]
     study = replace(BEAMS, parts={"Beams": Part(("modes", "scaling"), cases, lambda *case: {"answer": "3"})})
     rows = run_study(study, tmp_path)["Beams"]
@@ -84,14 +84,14 @@ def test_words_of_cases_are_plain_in_the_table_and_words_again_when_read(tmp_pat
     assert table_path(study, tmp_path).read_text().splitlines()[1].startswith('Beams,2,,"""3""",')
 
 
-def test_numbers_of_numpy_are_kept_as_numbers() -> None:
+def test_numpy_numbers_are_stored_as_numbers() -> None:
     row = {"load [N]": 1, "int": np.int64(3), "float": np.float64(0.5), "single": np.float32(0.25)}
     (kept,) = read_csv(csv_text(BEAMS, {("Beams", CASES[0]): row})).values()
     assert kept == {"load [N]": 1, "int": 3, "float": 0.5, "single": 0.25}
     assert {type(entry) for entry in kept.values()} == {int, float}
 
 
-def test_a_study_measures_nothing_twice(tmp_path: Path) -> None:
+def test_study_measures_each_case_once(tmp_path: Path) -> None:
     said: list[str] = []
     few = replace(BEAMS, parts={"Beams": replace(BEAMS.parts["Beams"], cases=CASES[1:])})
     first = run_study(few, tmp_path)
@@ -128,7 +128,7 @@ def _left_open(text: str) -> str:
 @pytest.mark.parametrize(
     "damage", [_cut, _changed, _unquoted, _renamed, _left_open, lambda text: "", lambda text: "\0"]
 )
-def test_a_damaged_table_is_measured_anew(damage: Callable[[str], str], tmp_path: Path) -> None:
+def test_damaged_table_is_measured_again(damage: Callable[[str], str], tmp_path: Path) -> None:
     rows = run_study(BEAMS, tmp_path)
     path = table_path(BEAMS, tmp_path)
     path.write_text(damage(path.read_text()))
@@ -137,9 +137,7 @@ def test_a_damaged_table_is_measured_anew(damage: Callable[[str], str], tmp_path
     assert DONE
 
 
-def test_rows_of_other_code_or_another_machine_are_measured_anew(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rows_of_other_code_or_machine_are_measured_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_study(BEAMS, tmp_path)
     run_study(replace(BEAMS, depends=lambda case: "another machine"), tmp_path)
     assert len(DONE) == 6
@@ -149,7 +147,7 @@ def test_rows_of_other_code_or_another_machine_are_measured_anew(
 
 
 @pytest.mark.parametrize("jobs", [1, 3])
-def test_an_interrupted_study_goes_on_where_it_was(jobs: int, tmp_path: Path) -> None:
+def test_interrupted_study_resumes(jobs: int, tmp_path: Path) -> None:
     def stopped(load: int, beam: str) -> Row:
         if load == 3:
             raise KeyboardInterrupt
@@ -166,7 +164,7 @@ def test_an_interrupted_study_goes_on_where_it_was(jobs: int, tmp_path: Path) ->
     assert len(DONE) == 3 - kept
 
 
-def test_a_case_that_breaks_is_told_and_tried_again_and_loses_no_other(tmp_path: Path) -> None:
+def test_failing_case_is_reported_and_retried_without_losing_others(tmp_path: Path) -> None:
     def broken(load: int, beam: str) -> Row:
         if load == 2:
             raise ZeroDivisionError("division by zero")
@@ -180,11 +178,11 @@ def test_a_case_that_breaks_is_told_and_tried_again_and_loses_no_other(tmp_path:
     assert len(DONE) == 3
 
 
-# --- a process of its own ------------------------------------------------------------------------------------
+# --- separate processes --------------------------------------------------------------------------------------
 
 
 def echo(seconds: float, words: str) -> Row:
-    """What it is told, some time later."""
+    """Return its argument after some seconds."""
     time.sleep(seconds)
     return {"words": words}
 
@@ -193,17 +191,17 @@ def broken(*case: object) -> Row:
     raise KeyError("no such wall")
 
 
-def test_a_case_is_measured_in_another_process() -> None:
+def test_case_is_measured_in_another_process() -> None:
     assert measure_apart(echo, (0.0, 'a "λ"')) == {"words": 'a "λ"'}
 
 
-def test_a_process_that_breaks_says_why() -> None:
+def test_failing_process_reports_its_error() -> None:
     with pytest.raises(Ended, match="KeyError: 'no such wall'"):
         measure_apart(broken, ())
 
 
-def test_a_killed_case_is_measured_anew(tmp_path: Path) -> None:
-    """Its process is killed from outside."""
+def test_killed_case_is_measured_again(tmp_path: Path) -> None:
+    """The process is killed from outside."""
 
     def kill() -> None:
         while True:
@@ -222,7 +220,7 @@ def test_a_killed_case_is_measured_anew(tmp_path: Path) -> None:
     assert run_study(study, tmp_path)["Beams"] == [{"seconds": 1.5, "words": "to be killed"}]
 
 
-def test_a_study_that_is_stopped_ends_its_processes() -> None:
+def test_stopped_study_ends_its_processes() -> None:
     stop = threading.Event()
     threading.Timer(0.3, stop.set).start()
     with pytest.raises(KeyboardInterrupt):
@@ -230,15 +228,13 @@ def test_a_study_that_is_stopped_ends_its_processes() -> None:
     assert not [process for process in psutil.Process().children() if "to be stopped" in "".join(process.cmdline())]
 
 
-def test_the_system_ends_a_run_that_works_too_long() -> None:
+def test_run_over_its_time_is_ended_by_the_system() -> None:
     script = "from runningbond.studies import apart\napart.LONGEST = 1\napart.limit_time()\nwhile True: pass"
     ended = subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=False)
     assert ended.returncode == apart.ENDED
 
 
-def test_a_run_that_takes_too_long_is_left_out_and_not_tried_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_run_over_its_time_is_omitted_and_not_retried(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store, "measure_apart", lambda *_: {"status": TOO_LONG})
     study = replace(BEAMS, apart=True)
     rows = run_study(study, tmp_path)
@@ -267,14 +263,14 @@ def test_a_row_with_a_measurement_is_an_edge(tmp_path: Path) -> None:
     assert edges[0].what == "Beams: 1, short"
 
 
-def test_tables_leave_lists_to_charts_and_columns_without_an_entry_out() -> None:
+def test_tables_omit_lists_and_empty_columns() -> None:
     rows = [{"wall": "W1", "λ": math.inf, "curve": [1, 2], "none": None}, {"wall": "W2", "λ": 0.123456789}]
     (sheet,) = all_rows({"Walls": rows})
     assert (sheet.title, sheet.heads) == ("Walls", ["wall", "λ"])
     assert sheet.rows == [["W1", "inf"], ["W2", "0.12346"]]
 
 
-def test_the_page_needs_nothing_but_its_charts(tmp_path: Path) -> None:
+def test_page_needs_only_its_charts(tmp_path: Path) -> None:
     rows = run_study(BEAMS, tmp_path)
     written = write_page("beams", ["# All **beams**", *section(BEAMS, rows, tmp_path)], tmp_path, "all")
     assert [path.name for path in written] == ["all.md", "report.html", "beams.png"]
@@ -287,7 +283,7 @@ def test_the_page_needs_nothing_but_its_charts(tmp_path: Path) -> None:
     assert "http" not in page.replace("http-equiv", "")
 
 
-def test_long_tables_are_folded_and_marks_in_cells_are_read(tmp_path: Path) -> None:
+def test_long_tables_are_folded_and_markup_in_cells_is_rendered(tmp_path: Path) -> None:
     sizes = {"Few": 3, "All": LONG + 1}
     sheets = [Sheet(title, ("answer",), [["`undecided` < 1"]] * rows) for title, rows in sizes.items()]
     page = write_page("beams", sheets, tmp_path, "all")[1].read_text(encoding="utf-8")
@@ -295,7 +291,7 @@ def test_long_tables_are_folded_and_marks_in_cells_are_read(tmp_path: Path) -> N
     assert re.findall(r"<details><summary><h3>(\w+)</h3>, (\d+) rows", page) == [("All", str(LONG + 1))]
 
 
-def test_the_table_is_one_that_others_read(tmp_path: Path) -> None:
+def test_table_is_readable_by_other_programs(tmp_path: Path) -> None:
     run_study(BEAMS, tmp_path)
     rows = list(csv.DictReader(io.StringIO(table_path(BEAMS, tmp_path).read_text())))
     assert [row["load [N]"] for row in rows] == ["1", "2", "3"]

@@ -1,4 +1,4 @@
-"""The critical time step of a wall, how damping moves it, and what becomes of a run beyond it."""
+"""The critical time step of a wall, the effect of damping on it, and runs beyond it."""
 
 import math
 from typing import Literal
@@ -41,8 +41,8 @@ def small() -> Scene:
 # --- the critical step ---------------------------------------------------------------------------------------
 
 
-def test_the_assembled_stiffness_is_that_of_the_sparse_operators() -> None:
-    """The kernels' own jumps, against the operators of limit analysis."""
+def test_assembled_stiffness_equals_that_of_the_sparse_operators() -> None:
+    """Jumps of the contact kernels against the operators of limit analysis."""
     scene = small()
     system, points = rigid_system(scene), contact_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
@@ -54,8 +54,8 @@ def test_the_assembled_stiffness_is_that_of_the_sparse_operators() -> None:
     assert np.abs(result - expected[np.ix_(column, column)]).max() < 1e-12 * np.abs(expected).max()
 
 
-def test_vibrations_are_mass_normalised_and_keep_their_cosine() -> None:
-    """u_n = u cos(n θ) with sin(θ/2) = ω Δt / 2, in the highest mode and in the lowest."""
+def test_vibrations_are_mass_normalised_and_have_the_discrete_frequency() -> None:
+    """u_n = u cos(n θ) with sin(θ/2) = ω Δt / 2, in the highest and the lowest mode."""
     system = rigid_system(bonded(small()))
     frequencies, shapes = vibrations(system)
     moving = np.isfinite(system.mass)
@@ -74,8 +74,8 @@ def test_vibrations_are_mass_normalised_and_keep_their_cosine() -> None:
 
 @pytest.mark.parametrize("modes", [3, 6, "all"])
 @pytest.mark.parametrize("scaled", [True, False])
-def test_a_wall_grows_beyond_the_step_of_its_largest_eigenvalue(modes: ModeCount, scaled: bool) -> None:
-    """To 0.1 %; the bound from each block alone lies inside it, and no farther than a fifth."""
+def test_motion_grows_beyond_the_step_of_the_largest_eigenvalue(modes: ModeCount, scaled: bool) -> None:
+    """To 0.1 %; the bound from single blocks is below it by at most a fifth."""
     system = system_of(modal_wall(bonded(small()), modes=modes), damping=0.0, mass_scaling=scaled)
     row = critical_step(system)
     assert row["measured"] == pytest.approx(row["theory"], rel=1e-3)
@@ -84,31 +84,31 @@ def test_a_wall_grows_beyond_the_step_of_its_largest_eigenvalue(modes: ModeCount
 
 
 @pytest.mark.parametrize(("omega_dt", "exact"), [(2.1, 1.877328), (2.01, 1.221301), (1.99, 1.0)])
-def test_one_mass_grows_at_the_exact_rate(omega_dt: float, exact: float) -> None:
+def test_growth_rate_of_one_mass_is_exact(omega_dt: float, exact: float) -> None:
     assert mass_row(GROWTH, omega_dt)["measured"] == pytest.approx(exact, abs=1e-6)
 
 
 @pytest.mark.parametrize("alpha", [0.5, *at_length(0.2, 0.8)])
-def test_local_damping_moves_the_edge(alpha: float) -> None:
+def test_local_damping_reduces_the_critical_step(alpha: float) -> None:
     assert mass_row(LOCAL, alpha)["measured"] == pytest.approx(2 / math.sqrt(1 + alpha), rel=1e-3)
 
 
 @pytest.mark.parametrize("ratio", [0.3, *at_length(0.05, 1.0)])
-def test_viscous_damping_moves_the_edge(ratio: float) -> None:
-    """Of the joints, as a run has it."""
+def test_viscous_damping_reduces_the_critical_step(ratio: float) -> None:
+    """With viscous joints, as in a run."""
     theory = 2 * (math.sqrt(1 + ratio**2) - ratio)
     assert mass_row(VISCOUS, ratio)["measured"] == pytest.approx(theory, rel=1e-3)
 
 
-# --- what becomes of a run -----------------------------------------------------------------------------------
+# --- runs beyond the critical step ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
 @pytest.mark.parametrize("times", [1.05, 1.5, 10.0, 1e12])
-def test_a_run_beyond_the_critical_step_fails_at_its_first_look(
+def test_run_beyond_the_critical_step_fails_at_its_first_check(
     model: Literal["dem-dynamic", "fem"], times: float
 ) -> None:
-    """And names the step that it took and one that is safe; the latter is safe."""
+    """The message has the step taken and a safe step."""
     outcome = run_beyond(model, times)
     scene = published_scene("wall-w1")
     system = rigid_system(scene) if model == "dem-dynamic" else system_of(modal_wall(scene))
@@ -119,8 +119,8 @@ def test_a_run_beyond_the_critical_step_fails_at_its_first_look(
     assert f"a step of {Run(system).dt:.4g} s is safe" in outcome.message
 
 
-def test_a_run_with_too_long_a_step_that_comes_to_rest_says_so() -> None:
-    """Between the edge with damping and that without it a wall may be brought down as at the safe step."""
+def test_run_at_rest_with_a_too_long_step_reports_it() -> None:
+    """Between the critical steps with and without damping, the result may equal that at the safe step."""
     scene = courses([[1]], joint__mortar=MORTAR)
     system = rigid_system(scene)
     points = contact_points(scene)
@@ -140,7 +140,7 @@ def test_a_run_with_too_long_a_step_that_comes_to_rest_says_so() -> None:
 
 
 @pytest.mark.parametrize("look", ["settle", "drive"])
-def test_who_drives_a_run_himself_is_told_too(look: str) -> None:
+def test_settle_and_drive_raise_for_a_too_long_step(look: str) -> None:
     system = rigid_system(small())
     step = 1.3 * 2 / float(vibrations(system)[0][-1])
     run, state = Run(system, dt=step), State.at_rest(system)
@@ -155,7 +155,7 @@ def test_who_drives_a_run_himself_is_told_too(look: str) -> None:
     assert state.steps == (LOOK if look == "settle" else 0)
 
 
-def test_numbers_that_are_none_stop_a_run() -> None:
+def test_nan_stops_a_run() -> None:
     system = rigid_system(small())
     state = State.at_rest(system)
     state.velocity[system.rigid[-1, 0]] = math.nan
@@ -164,7 +164,7 @@ def test_numbers_that_are_none_stop_a_run() -> None:
     assert state.steps == LOOK
 
 
-# --- what is no instability ----------------------------------------------------------------------------------
+# --- motions that are not unstable ---------------------------------------------------------------------------
 
 
 def _undamped(system: BlockSystem, times: float = 1.0) -> Run:
@@ -172,8 +172,8 @@ def _undamped(system: BlockSystem, times: float = 1.0) -> Run:
 
 
 @pytest.mark.parametrize("times", [0.3, 0.9])
-def test_a_vibration_that_was_set_off_by_hand_goes_on(times: float) -> None:
-    """Its energy counts as given; without that it is more than no load supplied."""
+def test_initial_velocity_counts_as_supplied_energy(times: float) -> None:
+    """Without it the kinetic energy would exceed what the loads supplied."""
     system = rigid_system(bonded(small()))
     run, state = _undamped(system, times), State.at_rest(system)
     state.velocity[np.isfinite(system.mass)] = np.random.default_rng(2).normal(size=int(np.isfinite(system.mass).sum()))
@@ -189,16 +189,16 @@ def test_a_vibration_that_was_set_off_by_hand_goes_on(times: float) -> None:
 
 @pytest.mark.parametrize("times", [0.3, 0.9])
 @pytest.mark.parametrize("cohesion", [0.0, 1e12])
-def test_an_undamped_wall_under_a_sudden_load_goes_on(times: float, cohesion: float) -> None:
-    """Dry, it chatters and falls; bonded, it swings for ever."""
+def test_undamped_wall_under_a_sudden_load_is_not_unstable(times: float, cohesion: float) -> None:
+    """A dry wall chatters and falls; a bonded one oscillates for ever."""
     system = rigid_system(courses([[0.5, 1, 0.5], [1, 1]], joint__mortar=MORTAR, joint__cohesion=cohesion))
     run, state = _undamped(system, times), State.at_rest(system)
     run.hold(state, 0.7, 20_000, given=0.0)
     assert state.steps == 20_000
 
 
-def test_looks_do_not_depend_on_the_pieces_in_which_steps_are_taken() -> None:
-    """Nor does the motion, to the last bit."""
+def test_checks_do_not_depend_on_how_steps_are_grouped() -> None:
+    """The motion is bitwise equal as well."""
     system = rigid_system(panel(joint__mortar=MORTAR, wall__length=0.48, wall__height=0.24))
     run = Run(system)
     whole, pieces = State.at_rest(system), State.at_rest(system)

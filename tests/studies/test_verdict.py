@@ -1,4 +1,4 @@
-"""Criteria of the verdict, too tight and too loose, against walls whose load is known."""
+"""Verdict criteria that are too tight or too loose, for walls with known load."""
 
 from functools import cache
 
@@ -31,15 +31,15 @@ from tests.at_length import at_length
 
 
 def swept(wall: str, criterion: str, values: tuple[float, ...]) -> Rows:
-    """Searches with one criterion changed, as rows of the study."""
+    """Searches with different values of one criterion, as rows of the study."""
     case = {"wall": wall, "criterion": criterion}
     return {PART: [case | {"value": value} | search(wall, criterion, value) for value in values]}
 
 
 @pytest.mark.parametrize("wall", [SLIDING, *at_length(TOPPLING, W1)])
 @pytest.mark.parametrize("criterion", [REST, FAR, INTERVAL])
-def test_the_suites_criteria_stand_on_a_plateau(wall: str, criterion: str) -> None:
-    """Half and twice each of them find the same λ, which is the one known."""
+def test_default_criteria_are_on_a_plateau(wall: str, criterion: str) -> None:
+    """Half and twice each default find the same λ, which is the known one."""
     default = DEFAULT[criterion]
     rows = sweep(swept(wall, criterion, (default / 2, default, 2 * default)), wall, criterion)
     assert plateau(rows) == (default / 2, 2 * default)
@@ -47,7 +47,7 @@ def test_the_suites_criteria_stand_on_a_plateau(wall: str, criterion: str) -> No
 
 
 @pytest.mark.parametrize("wall", [SLIDING, TOPPLING, W1])
-def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_that_theory_has(wall: str) -> None:
+def test_loose_rest_threshold_overestimates_the_load_by_the_exact_amount(wall: str) -> None:
     """λ_c + r / w: false stability, 5 to 10 % above the load with r = 0.03."""
     rest = DEFAULT[REST]
     rows = sweep(swept(wall, REST, (rest, 0.01, 0.03)), wall, REST)
@@ -56,31 +56,31 @@ def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_t
     assert plateau(rows) == (rest, rest)
 
 
-def test_a_threshold_of_rest_below_rounding_is_never_met() -> None:
+def test_rest_threshold_below_rounding_is_never_met() -> None:
     assert search(SLIDING, REST, 1e-16)["answer"] == "undecided"
 
 
-def test_a_displacement_too_small_takes_settlement_for_a_fall() -> None:
+def test_collapse_displacement_too_small_takes_settlement_for_collapse() -> None:
     assert search(W1, FAR, 1e-8)["answer"] == "infeasible"
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("farthest", [1e-6, 1e-3])
-def test_a_small_displacement_takes_no_slip_for_a_fall(farthest: float) -> None:
-    """W2 slips by more than a millionth of a block from rest to rest, and falls once it comes as far again."""
+def test_small_collapse_displacement_does_not_take_slip_for_collapse(farthest: float) -> None:
+    """W2 slips by over a millionth of a block between rests, and collapses once it moves as far again."""
     assert search(W2, FAR, farthest)["λ"] == pytest.approx(known_wall(W2).multiplier, rel=WIDTH)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("times", [1 / 4, 4])
-def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed(times: float) -> None:
-    """A quarter of the time to come to each load, and four times it, find one λ to 1 %."""
+def test_weightless_wall_has_the_same_load_at_any_loading_rate(times: float) -> None:
+    """A quarter of the time for each load step, and four times as long, find the same λ to 1 %."""
     assert weightless_at(times) == pytest.approx(weightless_at(1), rel=0.01)
 
 
 @cache
 def weightless_at(times: float) -> float | None:
-    """λ that the wall without weight bears, which takes so many times as long as in the suite to come to each load."""
+    """λ of the weightless wall with a multiple of the default time for each load step."""
     scene = published_scene(WEIGHTLESS)
     run = Run(rigid_system(scene))
     first, criteria = FIRST_STEP / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
@@ -88,8 +88,8 @@ def weightless_at(times: float) -> float | None:
 
 
 @pytest.mark.long
-def test_without_weight_the_suite_follows_it_far_enough() -> None:
-    """Twice as far finds the same λ, inside the interval that is certified."""
+def test_default_collapse_displacement_suffices_without_weight() -> None:
+    """Twice the displacement finds the same λ, inside the certified interval."""
     rows = sweep(swept(WEIGHTLESS, FAR, (U_CRIT, 2 * U_CRIT)), WEIGHTLESS, FAR)
     certified = limit_nonassociated(published_scene(WEIGHTLESS))
     assert plateau(rows) == (U_CRIT, 2 * U_CRIT)

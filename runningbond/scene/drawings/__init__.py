@@ -1,4 +1,4 @@
-"""Drawings that people have: DXF files and COMPAS assemblies, read into blocks and ground."""
+"""Blocks and ground read from drawings: DXF files and COMPAS assemblies."""
 
 from .drawing import METRES, Drawing, listed_outlines, read_drawing
 

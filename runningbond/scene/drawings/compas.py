@@ -1,7 +1,7 @@
-"""Assemblies of COMPAS, as its packages write them in JSON, read without them.
+"""Reader for COMPAS assemblies in JSON that does not need the COMPAS packages.
 
-The layouts are those of compas_assembly 0.7 (COMPAS 1 and 2), of its files before there were types in them, and of
-the BlockModel of compas_dem 0.3 to 0.6, by itself or in an Analysis.
+Supported are the layouts of compas_assembly 0.7 (COMPAS 1 and 2), of its older files without data types, and of the
+BlockModel of compas_dem 0.3 to 0.6, alone or within an Analysis.
 """
 
 import json
@@ -19,41 +19,41 @@ from .dxf import KEY
 ASSEMBLY, MODEL = "compas_assembly.datastructures/Assembly", "compas_dem.models/BlockModel"
 
 ANALYSIS = "compas_dem.models/Analysis"
-"""A model with the problems that are asked of it."""
+"""Type of a file that holds a model and the problems to be solved for it."""
 
 GROUP = "compas_model.elements/Group"
 
 AXES = {"y": (0, 2), "x": (1, 2), "z": (0, 1)}
-"""The wall's plane for each direction of its thickness; up is z, but for a wall that lies flat."""
+"""Plane of the wall for each direction of its thickness; z is up, except for a wall that lies flat."""
 
-SAME = 1e-6
-"""Difference of two coordinates that are one, in sizes of the assembly."""
+SAME_COORDINATE = 1e-6
+"""Difference, relative to the size of the assembly, up to which two coordinates count as equal."""
 
 ALIKE = 1e-3
-"""Difference of two thicknesses that are one, relative to them: units are converted and decimals rounded."""
+"""Relative difference up to which two thicknesses count as equal: allows for unit conversion and rounded decimals."""
 
 
 def read_compas(path: Path, unit: float, thickness: float | None = None) -> tuple[list[Array], list[Array], str]:
-    """Read an assembly whose blocks are prisms across the wall, or flat.
+    """Read an assembly whose blocks are flat, or prisms along the thickness of the wall.
 
     Parameters
     ----------
     unit
-        The file's [m].
+        Length unit of the file [m].
     thickness
-        The wall's [m], which tells across which axis it is read where several would do.
+        Thickness of the wall [m], which decides along which axis it is viewed if several are possible.
 
     Returns
     -------
     blocks, supports : list of (n, 2) float
-        Outlines, in the file's unit.
+        Outlines, in the unit of the file.
     note
-        How the assembly lies in its space.
+        In which plane the assembly was read, and its thickness.
 
     Raises
     ------
     SceneError
-        For what is no assembly, or none in a plane.
+        For a file that is not an assembly, or an assembly that is not a plane wall.
     """
     if path.exists() and not path.is_file():
         raise SceneError(KEY, "cannot be read as JSON: it is not a regular file", str(path))
@@ -80,7 +80,7 @@ def read_compas(path: Path, unit: float, thickness: float | None = None) -> tupl
 
 
 def _payload(value: Any) -> Any:
-    """What COMPAS wraps in a type and, in its first version, in a table of its own."""
+    """Data of a COMPAS object, without its wrapping: a data type and, in COMPAS 1, another table."""
     while isinstance(value, dict) and not {"vertex", "node"} & value.keys():
         inner = value.get("data", value.get("value"))
         if not isinstance(inner, dict):
@@ -90,7 +90,7 @@ def _payload(value: Any) -> Any:
 
 
 def _blocks(content: Any) -> Iterator[tuple[str, Any, bool]]:
-    """Name, mesh and support of each block, with a model's motion of it."""
+    """Name of each block, its mesh and the placement that a model gives it, and whether it is a support."""
     if isinstance(content, dict) and {"assembly", "blocks"} <= content.keys():
         assembly = _payload(content["assembly"])
         usual = assembly.get("dva", {}).get("is_support", False)
@@ -113,7 +113,7 @@ def _blocks(content: Any) -> Iterator[tuple[str, Any, bool]]:
 
 
 def _elements(model: Any) -> Iterator[tuple[str, Any, bool]]:
-    """Name, mesh and support of each element of a model, with its motion."""
+    """Name of each element of a model, its mesh and placement, and whether it is a support."""
     placed = _placed(model)
     for number, (key, element) in enumerate(model["elements"].items()):
         data = element["data"]
@@ -125,7 +125,7 @@ def _elements(model: Any) -> Iterator[tuple[str, Any, bool]]:
 
 
 def _placed(model: Any) -> dict[str, Array]:
-    """Motion ``(4, 4)`` of each element: its own, after which all that it is nested in and the model move it."""
+    """Placement ``(4, 4)`` of each element: its own transformation, then those of its parents and of the model."""
     own = {key: _matrix(element["data"]["transformation"]) for key, element in model["elements"].items()}
     whole = _matrix(model.get("transformation"))
     placed = {key: whole @ matrix for key, matrix in own.items()}
@@ -139,14 +139,14 @@ def _placed(model: Any) -> dict[str, Array]:
 
 
 def _matrix(transformation: Any) -> Array:
-    """The matrix of a transformation ``(4, 4)``; of none, that which moves nothing."""
+    """Matrix ``(4, 4)`` of a transformation; the identity if there is none."""
     return np.eye(4) if transformation is None else np.array(transformation["data"]["matrix"], dtype=float)
 
 
 def _mesh(block: tuple[Any, Any], name: str) -> tuple[Array, list[list[int]]]:
-    """Corners ``(n, 3)`` and faces, by numbers of corners."""
+    """Corners ``(n, 3)``, and faces as lists of corner numbers."""
     mesh, motion = block
-    usual = mesh.get("default_vertex_attributes", mesh.get("dva", {}))  # COMPAS writes what differs from it
+    usual = mesh.get("default_vertex_attributes", mesh.get("dva", {}))  # COMPAS omits default values
     keys = {key: k for k, key in enumerate(mesh["vertex"])}
     points = np.array([[(usual | vertex)[axis] for axis in "xyz"] for vertex in mesh["vertex"].values()], dtype=float)
     if motion is not None:
@@ -157,18 +157,18 @@ def _mesh(block: tuple[Any, Any], name: str) -> tuple[Array, list[list[int]]]:
 
 
 def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None) -> tuple[int, tuple[int, int], float]:
-    """Direction of the thickness, in which all blocks reach from one plane to one other, and the wall's own two."""
+    """Axis of the thickness, on which all blocks span between the same planes; both axes of the wall; its size."""
     low, high = (np.array([reach(points, axis=0) for _, points in meshes]) for reach in (np.min, np.max))
     size = float((high.max(axis=0) - low.min(axis=0)).max())
     scatter = np.maximum(np.ptp(low, axis=0), np.ptp(high, axis=0))
-    fits = [name for name in AXES if scatter["xyz".index(name)] <= SAME * size]
+    fits = [name for name in AXES if scatter["xyz".index(name)] <= SAME_COORDINATE * size]
     if fits:
         thick = {name: unit * float((high - low)[0, "xyz".index(name)]) for name in fits}
-        name = _across(thick, thickness, SAME * size * unit)
+        name = _across(thick, thickness, SAME_COORDINATE * size * unit)
         return "xyz".index(name), AXES[name], size
-    # The axis across the wall is that along which most blocks reach as far as one another.
+    # The thickness must be along the axis on which most blocks have the same extent.
     off = np.maximum(abs(low - np.median(low, axis=0)), abs(high - np.median(high, axis=0)))
-    alike = (off <= SAME * size).mean(axis=0)
+    alike = (off <= SAME_COORDINATE * size).mean(axis=0)
     across = int(np.argmax(alike))
     if alike[across] <= 0.5:
         what = (
@@ -181,10 +181,10 @@ def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None
 
 
 def _across(thick: dict[str, float], thickness: float | None, flat: float) -> str:
-    """The axis across the wall, of those along which blocks are as `thick` [m] as one another.
+    """Axis of the wall's thickness, out of the axes along which all blocks are equally thick, by `thick` [m].
 
-    Blocks without a thickness are flat across the wall alone. Of several axes it is that along which they are as thick
-    as the wall; a pier that is so along x and y is the same from both sides.
+    Blocks of zero thickness are flat along this axis only. Of several axes it is the one along which the blocks are as
+    thick as the wall. If these are x and y, the assembly is a square pier, which looks the same along both.
     """
     without = [name for name in thick if thick[name] <= flat]
     if without or len(thick) == 1:
@@ -206,11 +206,11 @@ def _across(thick: dict[str, float], thickness: float | None, flat: float) -> st
 def _outline(
     name: str, points: Array, faces: list[list[int]], across: int, plane: tuple[int, int], size: float
 ) -> Array:
-    """Outline of a prism: what its faces on one side cover, and those on the other side too."""
+    """Outline of a prism: the area covered by its front faces, which must equal that of its back faces."""
     depth, flat = points[:, across], points[:, list(plane)]
-    on = [np.abs(depth - level) <= SAME * size for level in (depth.min(), depth.max())]
+    on = [np.abs(depth - level) <= SAME_COORDINATE * size for level in (depth.min(), depth.max())]
     front, back = (_covered([flat[face] for face in faces if side[face].all()]) for side in on)
-    thin = SAME * size * max(front.length, SAME * size)
+    thin = SAME_COORDINATE * size * max(front.length, SAME_COORDINATE * size)
     if (
         front.geom_type != "Polygon"
         or front.is_empty
@@ -219,7 +219,7 @@ def _outline(
     ):
         raise SceneError(f"{KEY}, {name}", "is not a prism across the wall, with one outline a side and no hole")
     rims = [flat[[*face, face[0]]] for face in faces if not any(side[face].all() for side in on)]
-    along = shapely.covers(front.exterior.buffer(SAME * size), [shapely.LineString(rim) for rim in rims])
+    along = shapely.covers(front.exterior.buffer(SAME_COORDINATE * size), [shapely.LineString(rim) for rim in rims])
     if not along.all():
         raise SceneError(
             f"{KEY}, {name}", "is not a prism across the wall: between its two sides it has another outline"
@@ -228,6 +228,6 @@ def _outline(
 
 
 def _covered(corners: Sequence[Array]) -> shapely.Geometry:
-    """What faces ``(n, 2)`` cover together; nothing where one crosses itself."""
+    """Union of the faces ``(n, 2)``; empty if one crosses itself."""
     parts = [shapely.Polygon(face) for face in corners if len(face) > 2]
     return shapely.union_all(parts) if all(part.is_valid for part in parts) else shapely.Polygon()

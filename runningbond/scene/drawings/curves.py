@@ -1,4 +1,4 @@
-"""Curves of a drawing and the chords that stand for them: the same ones for all who draw along one arc."""
+"""Curves of a drawing and the chords that replace them; outlines that share an arc get the same chords."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,25 +10,25 @@ import numpy as np
 from ..arrays import Array
 
 SAGITTA = 5e-4
-"""How far a chord may leave its arc, as a share of the radius and of the arc between two corners."""
+"""Largest sagitta of a chord, relative to the radius and to the length of the arc between two corners."""
 
 ROUNDING = 1e-7
-"""Distance, in sizes of the drawing, below which two points are one: what six decimals in metres leave of 10 m."""
+"""Distance, in sizes of the drawing, below which points coincide: for 10 m the sixth decimal in metres."""
 
 TURN = 2 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """Part of a circle or ellipse: the points centre + cos t · axes[0] + sin t · axes[1].
+    """Part of a circle or ellipse: points centre + cos t · axes[0] + sin t · axes[1].
 
     Parameters
     ----------
     centre : (2,) float
     axes : (2, 2) float
-        Conjugate half axes, the second to the left of the first.
+        Conjugate semi-axes, the second to the left of the first.
     start, sweep
-        First parameter, and how far it runs from there, clockwise where negative [rad].
+        Parameter t of the first point, and its change up to the last one; a negative sweep is clockwise [rad].
     """
 
     centre: Array
@@ -38,14 +38,14 @@ class Arc:
 
     @classmethod
     def along(cls, centre: Array, axes: Array, start: float, sweep: float) -> "Arc":
-        """An arc with axes of either sense."""
+        """Create an arc from axes of which the second may also lie to the right of the first."""
         if axes[0, 0] * axes[1, 1] < axes[0, 1] * axes[1, 0]:
             axes, start, sweep = np.array([axes[0], -axes[1]]), -start, -sweep
         return cls(centre, axes, start, sweep)
 
     @classmethod
     def from_bulge(cls, p: Array, q: Array, bulge: float) -> "Arc":
-        """The arc from p to q whose angle is 4 atan(bulge), to the left of which its centre lies where that is > 0."""
+        """Create the arc from p to q with the angle 4 atan(bulge), counter-clockwise for a positive bulge."""
         x, y = q - p
         centre = (p + q) / 2 + (1 - bulge**2) / (4 * bulge) * np.array([-y, x])
         radius = np.hypot(x, y) * (1 + bulge**2) / (4 * abs(bulge))
@@ -54,16 +54,16 @@ class Arc:
 
     @property
     def closed(self) -> bool:
-        """Whether it runs all the way round."""
+        """Whether the arc is a full circle or ellipse."""
         return abs(self.sweep) > TURN * (1 - 1e-12)
 
     @cached_property
     def radius(self) -> float:
-        """Larger half axis."""
+        """Longer of the two semi-axes."""
         return float(np.hypot(*self.axes.T).max())
 
     def at(self, t: Any) -> Array:
-        """Points at parameters, ``(n, 2)``."""
+        """Points ``(n, 2)`` at parameters t."""
         t = np.atleast_1d(t)[:, None]
         points: Array = self.centre + np.cos(t) * self.axes[0] + np.sin(t) * self.axes[1]
         return points
@@ -74,25 +74,25 @@ class Arc:
         return self.at([self.start, self.start + self.sweep])
 
     def parameters(self, points: Array) -> tuple[Array, Array]:
-        """Parameters of points ``(n, 2)`` in [0, 2π), and their distances from the whole curve, but for a factor."""
+        """Parameters of points ``(n, 2)`` in [0, 2π), and distances from the full curve (upper bounds for ellipses)."""
         x, y = np.linalg.solve(self.axes.T, (points - self.centre).T)
         return np.mod(np.arctan2(y, x), TURN), np.abs(np.hypot(x, y) - 1) * self.radius
 
 
 class Chords:
-    """Chords for the arcs of one drawing.
+    """Chords for all arcs of one drawing.
 
-    A curve on which several arcs lie is cut at every drawn corner that touches it and evenly between two of these,
-    so that whoever draws along a part of it, in either sense, gets the same chords there.
+    Arcs on the same circle or ellipse share one curve, which is cut at every corner of the drawing that lies on it, and
+    into equal parts between these. Outlines along the same part of it thus get the same chords, in either direction.
 
     Parameters
     ----------
     arcs
         All arcs of the drawing.
     corners : (n, 2) float
-        All its corners and ends.
+        All corners and ends of curves in the drawing.
     tolerance
-        Distance below which a corner lies on an arc.
+        Distance up to which a corner counts as on an arc.
     """
 
     def __init__(self, arcs: Sequence[Arc], corners: Array, tolerance: float) -> None:
@@ -116,7 +116,7 @@ class Chords:
                 self._curves.append((arc, t[on], corners[on]))
 
     def _curve_under(self, arc: Arc) -> tuple[Arc, Array, Array] | None:
-        """The curve of which an arc is a part, with its corners' parameters and places."""
+        """The curve that an arc is a part of, with the parameters and positions of its corners."""
         n = len(self._curves)
         apart = (arc.at(arc.start + arc.sweep * np.linspace(0, 1, 5)) - self._centre[:n]) @ self._inverse[:n]
         off = np.abs(np.hypot(*np.moveaxis(apart, 2, 0)) - self._scale[:n]).max(axis=1, initial=0.0)
@@ -124,7 +124,7 @@ class Chords:
         return self._curves[on[0]] if len(on) else None
 
     def cut(self, arc: Arc) -> Array:
-        """Corners of the chords of an arc from its first point to its last, ``(n, 2)``."""
+        """Ends of the chords of an arc, from its first point to its last, ``(n, 2)``."""
         under = self._curve_under(arc)
         assert under is not None
         curve, t, corners = under
@@ -152,13 +152,13 @@ class Chords:
 
 
 def _pieces(angle: float) -> int:
-    """Chords that an angle [rad] between two corners is cut into; a hair more than a whole number is that number."""
+    """Number of chords for an angle [rad] between two corners, rounded up with a tolerance of 1e-6."""
     by_radius, by_length = angle / (2 * np.arccos(1 - SAGITTA)), np.sqrt(angle / (8 * SAGITTA))
     return max(1, int(np.ceil(max(by_radius, by_length) - 1e-6)))
 
 
 def spline_points(spline: Any) -> Array:
-    """Points along an ezdxf B-spline, ``(n, 3)``, as many between all its knots, close enough for `SAGITTA`."""
+    """Points ``(n, 3)`` on an ezdxf B-spline, equally many between any two knots, dense enough to meet `SAGITTA`."""
     knots = np.array(spline.knots())
     knots = np.unique(np.clip(knots, knots[spline.order - 1], knots[-spline.order]))
     pieces = 2

@@ -1,4 +1,4 @@
-"""Blocks from a drawing, DXF curves or a COMPAS assembly, closed, cut into chords and healed; or as listed."""
+"""Blocks from a drawing (DXF or COMPAS assembly) or from listed outlines: closed, cleaned, expanded and healed."""
 
 import re
 from collections import Counter
@@ -24,21 +24,21 @@ from .healing import missed_joints
 from .loops import join
 
 STRAIGHT = 2e-5
-"""How far a corner may lie off a straight side, in sizes of the smallest block: rounding, below any contact."""
+"""Deviation from a straight side up to which a corner is removed, in sizes of the smallest block: rounding error."""
 
-STROKE = 1e-4
-"""Most that rounding may be taken for, in middling pieces of what is drawn: a drawing may have strays far off."""
+MAX_ROUNDING = 1e-4
+"""Upper limit of the rounding error, in median lengths of drawn pieces: distant stray curves enlarge a drawing."""
 
-FLAT = 1e-9
-"""Area around an outline, in squares of its larger side, that rounding leaves of corners on one line."""
+COLLINEAR_AREA = 1e-9
+"""Area of an outline's convex hull, in squares of its larger extent, up to which its corners count as collinear."""
 
 SLIVER = 0.01
-"""Smaller side, in those of the middling block, below which an outline is what was left over, and no stone."""
+"""Smaller side of an outline, relative to the median of all, below which it is a left-over sliver and not a stone."""
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
 GROUND_LAYERS = ("ground", "soil", "support", "base", "terrain")
-"""Names of layers, in letters of any case, that hold pieces of the ground and nothing else."""
+"""Names, in lower or upper case, of the layers on which every outline is a piece of the ground."""
 
 
 Corners: TypeAlias = Sequence[tuple[float, float]]
@@ -46,18 +46,18 @@ Corners: TypeAlias = Sequence[tuple[float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What a drawing holds.
+    """Content of a drawing.
 
     Parameters
     ----------
     blocks : list of (n, 2) float
         Outlines of the wall's blocks [m], counter-clockwise.
     layers
-        Layer of each block; none for an assembly and for listed outlines.
+        Layer of each block; empty for an assembly and for listed outlines.
     grounds : list of (n, 2) float
         Outlines of the ground [m].
     notes
-        What was joined, cut, moved and left out.
+        What was joined, cut, moved and omitted, for the user.
     """
 
     blocks: list[Array]
@@ -74,26 +74,26 @@ def read_drawing(
     heal: float | None = None,
     thickness: float | None = None,
 ) -> Drawing:
-    """Read a DXF drawing or, where the file's name ends in .json, a COMPAS assembly.
+    """Read a DXF drawing or, if the name of the file ends in .json, a COMPAS assembly.
 
-    The ground is what lies on a layer of `GROUND_LAYERS` or, where there is none, the outline whose corners lie lowest
-    on average; of an assembly, its supports.
+    The ground is every outline on a layer of `GROUND_LAYERS` or, if there is none, the outline with the lowest mean
+    height of its corners. For an assembly, the ground is its supports.
 
     Parameters
     ----------
     units
         A key of `METRES`.
     expand
-        Stones are expanded to the middle of joints full of mortar up to this width [m]; None leaves them as they are.
+        Stones are expanded to the middle of mortar joints up to this width [m]; None leaves them unchanged.
     heal
-        Gaps and overlaps up to this are closed, then [m]; None leaves all as they are.
+        Gaps and overlaps up to this width are closed afterwards [m]; None leaves them unchanged.
     thickness
-        The wall's [m], which tells from which side an assembly is seen that could be seen from several.
+        Thickness of the wall [m], which decides along which axis an assembly is viewed if several are possible.
 
     Raises
     ------
     SceneError
-        For a file of another kind, or no drawing of a wall.
+        For a file of another kind, or a drawing that does not show a wall.
     """
     scale = METRES[one_of("wall.units", units, METRES)]
     if path.suffix.lower() == ".json":
@@ -129,7 +129,7 @@ def listed_outlines(
     expand: float | None = None,
     heal: float | None = None,
 ) -> Drawing:
-    """What a scene file lists, in units of `scale` [m], cleaned, expanded and healed as a drawing is."""
+    """Clean, expand and heal the outlines listed in a scene file, in units of `scale` [m], like those of a drawing."""
     outlines = [np.array(corners) * scale for corners in (*blocks, *grounds)]
     names = [f"wall.{key}[{k}]" for key, of in (("outlines", blocks), ("ground", grounds)) for k in range(len(of))]
     cleaned, spikes = _cleaned(outlines, names)
@@ -138,7 +138,7 @@ def listed_outlines(
 
 
 def _together(drawing: Drawing, expand: float | None, heal: float | None) -> Drawing:
-    """A drawing whose stones are brought together, and what there is to say of gaps that are left."""
+    """Expand and heal the stones of a drawing, and add notes on remaining gaps and on slivers."""
     blocks, count, notes = drawing.blocks, len(drawing.blocks), drawing.notes
     if expand is not None:
         blocks, note = expanded(blocks, drawing.grounds, expand)
@@ -152,14 +152,14 @@ def _together(drawing: Drawing, expand: float | None, heal: float | None) -> Dra
 
 
 def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:
-    """Closed outlines of a space with their layers and names, and what there is to say."""
+    """Closed outlines of a model space, their layers and names, and notes."""
     ends = [piece.ends if isinstance(piece, Arc) else piece for curve in space.drawn for piece in curve.pieces]
     corners = np.vstack([np.zeros((0, 2)), *ends])
     tolerance = 0.0
     if len(corners):
         strokes = np.array([np.ptp(points, axis=0).max() for points in ends])
         stroke = float(np.median(strokes[strokes > 0])) if strokes.any() else np.inf
-        tolerance = min(ROUNDING * float(np.ptp(corners, axis=0).max()), STROKE * stroke)
+        tolerance = min(ROUNDING * float(np.ptp(corners, axis=0).max()), MAX_ROUNDING * stroke)
     arcs = [piece for curve in space.drawn for piece in curve.pieces if isinstance(piece, Arc)]
     chords = Chords(arcs, corners, tolerance)
     found: list[tuple[Array, str, str]] = []
@@ -204,14 +204,14 @@ def _listed(left_out: Counter[tuple[str, str]]) -> str:
 def _without_ground(
     outlines: list[Array], layers: list[str], path: str, passed_over: str
 ) -> tuple[list[Array], list[str], list[Array], list[str]]:
-    """Blocks with their layers, pieces of the ground, and notes where it was guessed, or lies on several layers."""
+    """Blocks, their layers, pieces of the ground, and notes if the ground was guessed or is on several layers."""
     if len(outlines) < 2:
         number = f"{len(outlines) or 'no'} closed outline{'s' * (len(outlines) != 1)}"
         what = f"holds {number}{passed_over}; it needs the ground and at least one block"
         raise SceneError(KEY, what, path)
     ground = [k for k, layer in enumerate(layers) if layer.lower() in GROUND_LAYERS]
     notes, own = list[str](), list(dict.fromkeys(layers[k] for k in ground))
-    if len(own) > 1:  # of a ground and a base, say, the second may be meant for a plinth, which is a stone
+    if len(own) > 1:  # with both a ground and a base, the base may be a plinth, and thus a stone
         notes.append(f"ground: all that lies on layers {' and '.join(own)} is ground, {len(ground)} outlines")
     if not ground:
         middle = np.array([outline[:, 1].mean() for outline in outlines])
@@ -226,7 +226,7 @@ def _without_ground(
     if len(ground) == len(outlines):
         raise SceneError(KEY, f"has all its outlines on layer {layers[0]}, which is the ground's", path)
     wall = [k for k in range(len(outlines)) if k not in set(ground)]
-    if own:  # by its layer, which may be another's name for a plinth
+    if own:  # the ground was found by its layer, whose name may be meant for a plinth
         low = [float(outline[:, 1].min()) for outline in outlines]
         under = min(wall, key=low.__getitem__)
         if low[under] < min(low[k] for k in ground) - STRAIGHT * float(np.ptp(outlines[under][:, 1])):
@@ -236,7 +236,7 @@ def _without_ground(
 
 
 def _slivers(polygons: list[Array]) -> str:
-    """Say which outlines are too thin to be stones; nothing where none is."""
+    """Note on outlines that are too thin to be stones; empty if there are none."""
     sides = smaller_sides([shapely.Polygon(polygon) for polygon in polygons])
     thin = int(np.sum(sides < SLIVER * np.median(sides)))
     if not thin:
@@ -247,7 +247,7 @@ def _slivers(polygons: list[Array]) -> str:
 
 
 def _where(polygon: shapely.Polygon) -> str:
-    """Where a polygon crosses itself, as far as shapely says it."""
+    """Text for the point where a polygon crosses itself; empty if Shapely does not report one."""
     found = re.search(r"\[(\S+) (\S+)\]$", shapely.is_valid_reason(polygon))
     at = np.array(found.groups() if found else (np.nan, np.nan), dtype=float)
     low, high = np.reshape(polygon.bounds, (2, 2))
@@ -255,9 +255,9 @@ def _where(polygon: shapely.Polygon) -> str:
 
 
 def _cleaned(outlines: list[Array], names: list[str]) -> tuple[list[Array], str]:
-    """Outlines counter-clockwise, without spikes and corners in the middle of a straight side; and a note on spikes.
+    """Outlines counter-clockwise, without spikes and without corners on straight sides; and a note on spikes.
 
-    Corners on a side would cut a joint in two, spikes make joints beside stones that they are no part of.
+    Such corners would divide a joint in two, and spikes would make joints with stones that they do not belong to.
     """
     for outline, name in zip(outlines, names, strict=True):
         if len(outline) < 3:
@@ -267,7 +267,7 @@ def _cleaned(outlines: list[Array], names: list[str]) -> tuple[list[Array], str]
     hulls = shapely.area(shapely.convex_hull([shapely.Polygon(outline) for outline in outlines]))
     for outline, name, area in zip(outlines, names, hulls, strict=True):
         span = float(np.ptp(outline, axis=0).max())
-        if area <= FLAT * span**2:
+        if area <= COLLINEAR_AREA * span**2:
             at = place(outline[0], span)
             raise SceneError(name, f"has no area: its corners, the first at {at} m, lie on one line or in one point")
     least = STRAIGHT * float(np.sqrt(shapely.area([shapely.Polygon(outline) for outline in outlines]).min()))
@@ -275,7 +275,7 @@ def _cleaned(outlines: list[Array], names: list[str]) -> tuple[list[Array], str]
     for outline, name in zip(outlines, names, strict=True):
         ring, its_tips = without_spikes(outline, least)
         tips.append(its_tips)
-        # A side is straight from its first corner on, so the first one must be none in a side's middle.
+        # Simplification keeps the first corner of a ring, so it must not lie in the middle of a straight side.
         first = int(np.lexsort(ring.T[::-1])[0])
         polygon = shapely.Polygon(np.roll(ring, -first, axis=0))
         if not polygon.is_valid:
@@ -287,7 +287,7 @@ def _cleaned(outlines: list[Array], names: list[str]) -> tuple[list[Array], str]
 
 
 def _spikes(tips: Array, span: float) -> str:
-    """Say where outlines of a wall of some size [m] turned back on themselves; nothing where none did."""
+    """Note on the spikes removed from a wall of the size `span` [m], by their tips; empty if there are none."""
     if not len(tips):
         return ""
     where = f"{len(tips)} places, the first at " * (len(tips) > 1) + place(tips[0], span)

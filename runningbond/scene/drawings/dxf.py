@@ -1,4 +1,4 @@
-"""What a DXF file draws: its curves by layer, INSERTs exploded, and a count of all else."""
+"""Reader for DXF files: curves by layer, with INSERTs exploded, and a count of all other entities."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -15,24 +15,24 @@ from .curves import TURN, Arc, spline_points
 
 KEY = "wall.drawing"
 
-MOST_ENTITIES = 300_000
-"""Entities that a drawing may hold once its INSERTs are exploded; a few that hold each other could be any number."""
+MAX_ENTITIES = 300_000
+"""Maximum number of entities once INSERTs are exploded: a few nested INSERTs can multiply to any number."""
 
-DEEPEST = 32
-"""INSERTs within INSERTs."""
+MAX_INSERT_DEPTH = 32
+"""Maximum nesting depth of INSERTs."""
 
 VIEWPORT = "VIEWPORT"
-"""A window of a sheet in paper space onto the model: it draws nothing of its own."""
+"""Entity that shows the model on a sheet of the paper space; it is not a drawing of its own."""
 
 UNITS_KEY = "$INSUNITS"
 
 HEADER_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
-"""Codes of $INSUNITS."""
+"""Units by their code in $INSUNITS."""
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """One curve: straight pieces, ``(n, 2)`` points in drawing units, and arcs, each from where the last one ends."""
+    """One curve of successive pieces: arcs, and polylines ``(n, 2)`` in drawing units."""
 
     layer: str
     name: str
@@ -41,13 +41,13 @@ class Drawn:
 
     @property
     def has_length(self) -> bool:
-        """Whether it is more than a point."""
+        """Whether the curve is more than a single point."""
         return any(isinstance(piece, Arc) or (piece != piece[:1]).any() for piece in self.pieces)
 
 
 @dataclass(frozen=True)
 class ModelSpace:
-    """The curves of a drawing, entities left out by type and place, and the units that its header names."""
+    """Curves of a drawing, the number of omitted entities by type and place, and the units given in the header."""
 
     drawn: list[Drawn]
     left_out: Counter[tuple[str, str]]
@@ -57,20 +57,20 @@ class ModelSpace:
 def read_dxf(path: Path) -> ModelSpace:
     """Read the model space of a DXF file.
 
-    Layers that are off or frozen are not seen in a CAD program and are not read here; what stands on layer 0 of a
-    block is on the layer of its INSERT.
+    Layers that are off or frozen are not read, as a CAD program does not show them. Entities on layer 0 of a DXF block
+    are on the layer of its INSERT.
 
     Raises
     ------
     SceneError
-        For what is no DXF file, for meshes and for curves out of the drawing's plane.
+        For a file that is not DXF, for meshes, and for curves outside the plane of the drawing.
     """
     try:
-        if not S_ISREG(path.stat().st_mode):  # a device has no end, and a pipe may have no other one
+        if not S_ISREG(path.stat().st_mode):  # reading a device never ends, and a pipe may have no writer
             raise SceneError(KEY, "cannot be read as DXF: it is not a regular file", str(path))
         try:
-            from ezdxf.filemanagement import readfile  # which takes longer than to see that there is no file
-        except Exception as error:  # its import reads settings of the user's, who may have no home
+            from ezdxf.filemanagement import readfile  # slow import, so only once the file is known to exist
+        except Exception as error:  # importing it reads user settings and fails without a home folder
             raise SceneError(KEY, f"cannot be read, for ezdxf cannot be imported: {error}", str(path)) from error
         document = readfile(path)
         left_out: Counter[tuple[str, str]] = Counter()
@@ -88,29 +88,29 @@ def read_dxf(path: Path) -> ModelSpace:
                 left_out.update(
                     (entity.dxftype(), "in paper space") for entity in sheet if entity.dxftype() != VIEWPORT
                 )
-        said = UNITS_KEY.encode() in path.read_bytes()  # ezdxf takes metres where a file says nothing
+        said = UNITS_KEY.encode() in path.read_bytes()  # ezdxf assumes metres if a file has no units
         return ModelSpace(drawn, left_out, HEADER_UNITS.get(document.header.get(UNITS_KEY, 0)) if said else None)
     except SceneError:
         raise
     except OSError as error:
-        if error.strerror is None:  # of ezdxf's, for a file of another kind
+        if error.strerror is None:  # raised by ezdxf for a file of another kind
             dwg = path.read_bytes()[:4] == b"AC10"
             what = "is a DWG file; save the drawing as DXF" if dwg else "is not a DXF file"
             raise SceneError(KEY, what, str(path)) from error
         raise SceneError(KEY, f"cannot be read as DXF: {error.strerror}", str(path)) from error
-    except Exception as error:  # whatever its parsers raise on a file that is damaged
+    except Exception as error:  # its parsers may raise anything on a damaged file
         raise SceneError(KEY, f"is not a valid DXF file: {str(error) or type(error).__name__}", str(path)) from error
 
 
 class _Walk:
-    """Entities of a document's model space, INSERTs exploded, each with its layer and name."""
+    """Iteration over the entities of a model space, with INSERTs exploded, each with its layer and name."""
 
     def __init__(self, document: Any, left_out: Counter[tuple[str, str]]) -> None:
         self._document, self._left_out, self._seen = document, left_out, 0
         self._layers = {_decoded(layer.dxf.name).lower(): layer for layer in document.layers}
 
     def all(self) -> Iterator[tuple[Any, str, str]]:
-        """The entities that are seen."""
+        """All visible entities."""
         return self._within(self._document.modelspace(), None, "", 0)
 
     def _within(self, entities: Any, owner: str | None, within: str, depth: int) -> Iterator[tuple[Any, str, str]]:
@@ -128,8 +128,8 @@ class _Walk:
                 yield entity, layer, name
 
     def _exploded(self, insert: Any, layer: str, name: str, depth: int) -> Iterator[tuple[Any, str, str]]:
-        if depth == DEEPEST:
-            raise SceneError(name, f"nests INSERTs more than {DEEPEST} deep, or in themselves")
+        if depth == MAX_INSERT_DEPTH:
+            raise SceneError(name, f"nests INSERTs more than {MAX_INSERT_DEPTH} deep, or in themselves")
         if insert.block() is None or insert.block().block.is_xref:
             self._left_out["INSERT of another file", f"on layer {layer}"] += 1
             return
@@ -146,7 +146,7 @@ class _Walk:
             yield from self._within(parts, layer, name, depth + 1)
 
     def _spelt(self, layer: str) -> str:
-        """A layer as the document's table spells it: names that differ in capitals alone are one layer's."""
+        """Name of a layer as spelt in the layer table: names that differ only in case are the same layer."""
         entry = self._layers.get(_decoded(layer).lower())
         return _decoded(layer if entry is None else entry.dxf.name)
 
@@ -158,19 +158,19 @@ class _Walk:
 
     def _count(self, more: int) -> None:
         self._seen += more
-        if self._seen > MOST_ENTITIES:
-            raise SceneError(KEY, f"holds more than {MOST_ENTITIES} entities, its INSERTs exploded")
+        if self._seen > MAX_ENTITIES:
+            raise SceneError(KEY, f"holds more than {MAX_ENTITIES} entities, its INSERTs exploded")
 
 
 def _decoded(name: str) -> str:
-    """A name, in which files before 2007 write what their code page lacks as U+ and its number after a backslash."""
+    """Decode a name: files before DXF 2007 escape characters missing in their code page as a backslash and U+XXXX."""
     from ezdxf.lldxf.encoding import decode_dxf_unicode
 
     return str(decode_dxf_unicode(name))
 
 
 def _curve(entity: Any, layer: str, name: str) -> Drawn | None:
-    """An entity as a curve; None where it is none."""
+    """An entity as a curve; None if it is not a curve."""
     kind = entity.dxftype()
     closed = False
     if kind == "LINE":
@@ -193,7 +193,7 @@ def _polyline(entity: Any, name: str) -> tuple[list[Array | Arc], bool]:
         points, bulges = list(entity.vertices_in_wcs()), [row[0] for row in entity.get_points("b")]
         closed = entity.closed
     elif entity.is_2d_polyline or entity.is_3d_polyline:
-        corners = [v for v in entity.vertices if not v.dxf.flags & 16]  # 16: a spline's frame, not its curve
+        corners = [v for v in entity.vertices if not v.dxf.flags & 16]  # 16: spline control point
         places = [v.dxf.location for v in corners]
         points = places if entity.is_3d_polyline else list(entity.ocs().points_to_wcs(places))
         bulges, closed = [v.dxf.bulge for v in corners], entity.is_closed
@@ -242,7 +242,7 @@ def _sweep(start: float, end: float) -> float:
 
 
 def _flat(points: Any, name: str) -> Array:
-    """Points in space as points of the drawing's plane, or of one parallel to it, ``(n, 2)``."""
+    """Points in space as points ``(n, 2)`` of the drawing's plane; they must lie in it or in a parallel plane."""
     found = _finite(np.array([(p[0], p[1], p[2]) for p in points], dtype=float).reshape(-1, 3), name)
     if len(found) and np.ptp(found[:, 2]) > 1e-6 * np.ptp(found[:, :2], axis=0).max():
         raise SceneError(name, "does not lie in the drawing's plane")

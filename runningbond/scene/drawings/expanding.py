@@ -1,7 +1,7 @@
-"""Stones that were drawn with the mortar between them, expanded to the middle of the joints.
+"""Expansion of stones that were drawn with mortar between them, up to the middle of the mortar.
 
-That is what simplified micro-models ask for (lourenco1997): mortar becomes a part of the stones, and a joint a line
-without thickness.
+Simplified micro-models require this (lourenco1997): mortar becomes part of the stones, and a joint a line of zero
+thickness.
 """
 
 from collections import defaultdict
@@ -19,44 +19,44 @@ from .middle_lines import SAMPLED, middle_lines, straightened
 KEY = "wall.expand"
 
 SHRUNK = 0.1
-"""How far stones stand back from what was drawn, so that none touch, in joints' largest widths."""
+"""Distance by which stones are shrunk at first so that none touch, relative to the width of the widest joint."""
 
-MOST_SAMPLES = 2e6
-"""Of all stones together; a width that asks for more is a slip, and would take all memory."""
+MAX_SAMPLES = 2e6
+"""Maximum number of samples on all stones; a width that needs more is a typing error and would exhaust the memory."""
 
-SHARED = 0.1
-"""Of a stone's area that is in another one: what is more is no inaccuracy of a survey."""
+MAX_OVERLAP = 0.1
+"""Overlap, relative to a stone's area, above which it is reported as the reason why expansion fails."""
 
 GRID = 1e-6
-"""What corners are rounded to, in largest widths: without, GEOS now and then takes shapes whose sides all but coincide
-for ones that share nothing."""
+"""Grid that corners are rounded to, relative to the width of the widest joint: without it, GEOS sometimes treats shapes
+with almost coincident sides as disjoint."""
 
 
 def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> tuple[list[Array], str]:
-    """Expand stones to the middle of the mortar between them, and to the ground, which stays.
+    """Expand stones to the middle of the mortar between them, and up to the ground, which is not changed.
 
     Parameters
     ----------
     stones, grounds : list of (n, 2) float
         Outlines, counter-clockwise [m].
     width
-        Of the widest joint [m]; what is wider stays open, but for pockets between stones twice as wide.
+        Width of the widest joint [m]. Wider gaps stay open, except pockets between stones up to twice as wide.
 
     Returns
     -------
     expanded : list of (n, 2) float
-        Outlines of the stones in their order, neighbours with the same line between them.
+        Outlines of the stones, in the given order; neighbours share the same line.
     note
-        How wide joints are on average, and where gaps are left that are hardly wider than joints.
+        Mean width of the joints, and where gaps remain that are not much wider than joints.
 
     Raises
     ------
     SceneError
-        For a width above the smallest stone's smaller side or next to nothing beside all stones' sides, and for stones
-        that lie in others or in the ground, or would go all around others.
+        For a width above the smaller side of the smallest stone or negligible beside the length of all sides, and for
+        stones that lie in others or in the ground, or would enclose others.
     """
     corners = np.vstack([*stones])
-    origin = corners.mean(axis=0)  # corners far from zero would be rounded by more than they should
+    origin = corners.mean(axis=0)  # rounding errors of coordinates grow with the distance from zero
     drawn = np.array([shapely.Polygon(stone - origin) for stone in stones])
     size = float(np.ptp(corners, axis=0).max())
     names = [f"block {k} at {place(stone.mean(axis=0), size)}" for k, stone in enumerate(stones)]
@@ -73,20 +73,20 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
 
 
 def _check(drawn: Any, names: Sequence[str], width: float) -> None:
-    """Refuse widths that no joint between these stones has, or that would take samples without end."""
+    """Refuse widths that are too large for joints between these stones, or so small that they need too many samples."""
     sides = smaller_sides(list(drawn))
     if width > sides.min():
         smallest = names[int(sides.argmin())]
         what = f"must be at most the smallest block's smaller side, {sides.min():.4g}: that of {smallest}"
         raise SceneError(KEY, what, width)
     length = float(shapely.length(drawn).sum())
-    if length > MOST_SAMPLES * SAMPLED * width:
-        what = f"must be at least {length / (MOST_SAMPLES * SAMPLED):.2g} m for blocks with {length:.3g} m of sides"
+    if length > MAX_SAMPLES * SAMPLED * width:
+        what = f"must be at least {length / (MAX_SAMPLES * SAMPLED):.2g} m for blocks with {length:.3g} m of sides"
         raise SceneError(KEY, what, width)
 
 
 def _cells(stones: Any, whole: Any, width: float) -> list[Any]:
-    """Each stone's part of the wall, up to the middle of what is between them; without one an empty polygon."""
+    """Each stone's part of the wall, up to the middle of the mortar; an empty polygon for a stone without any."""
     inner = shapely.buffer(stones, -SHRUNK * width, join_style="mitre")
     lines = straightened(middle_lines(inner, whole, width), width)
     network = shapely.union_all([whole.boundary, *lines], grid_size=GRID * width)
@@ -98,7 +98,7 @@ def _cells(stones: Any, whole: Any, width: float) -> list[Any]:
 
 
 def _note(drawn: Any, ground: Any, whole: Any, cells: Sequence[Any], grid: float) -> str:
-    """Say how wide joints are on average."""
+    """Note on the mean width of the joints."""
     filled = whole.area - shapely.difference(shapely.union_all(drawn, grid_size=grid), ground, grid_size=grid).area
     bed = shapely.intersection(ground.boundary, whole.boundary, grid_size=grid).length if ground.area else 0.0
     length = (sum(cell.length for cell in cells) - whole.length) / 2 + bed
@@ -108,7 +108,7 @@ def _note(drawn: Any, ground: Any, whole: Any, cells: Sequence[Any], grid: float
 
 
 def _left_open(ground: Any, whole: Any, width: float, origin: Array, size: float) -> str:
-    """Say where gaps are left that are up to twice as wide as joints; nothing where there are none."""
+    """Note on remaining gaps that are up to twice as wide as the widest joint; empty if there are none."""
     grid = GRID * width
     shut = _closed(shapely.union(whole, ground, grid_size=grid), 2 * width)
     known = shapely.union(whole, _closed(ground, 2 * width), grid_size=grid)
@@ -123,11 +123,11 @@ def _left_open(ground: Any, whole: Any, width: float, origin: Array, size: float
 
 
 def _unfit(named: str, k: int, drawn: Any, ground: Any, around: bool) -> str:
-    """Why a stone cannot be expanded: what it lies in, if it does, what it goes around, or that it comes apart."""
+    """Reason why a stone cannot be expanded: it lies in something else, encloses something, or falls into pieces."""
     shared = shapely.area(shapely.intersection(drawn, drawn[k]))
     shared[k] = shapely.area(shapely.intersection(ground, drawn[k]))
     other = int(shared.argmax())
-    if shared[other] > SHARED * drawn[k].area:
+    if shared[other] > MAX_OVERLAP * drawn[k].area:
         what = "the ground" if other == k else f"block {other}"
         return f"finds {shared[other] / drawn[k].area:.0%} of {named} in {what}; draw each where it ends"
     if around:
@@ -136,11 +136,11 @@ def _unfit(named: str, k: int, drawn: Any, ground: Any, around: bool) -> str:
 
 
 def _mortared(drawn: Any, ground: Any, width: float) -> Any:
-    """Stones with the mortar between them and on the ground: all gaps up to a width, and pockets twice as wide."""
+    """Stones with the mortar between them and on the ground: gaps up to a width, and pockets up to twice as wide."""
     grid = GRID * width
     stones = shapely.union_all(drawn, grid_size=grid)
     closed = _closed(shapely.union(stones, ground, grid_size=grid), width)
-    # What is between pieces of the ground is as little a stone's.
+    # Gaps between pieces of the ground do not belong to the stones either.
     ground = shapely.union(ground, shapely.difference(_closed(ground, width), stones, grid_size=grid), grid_size=grid)
     parts = []
     for part in polygonal_parts(closed):
@@ -150,14 +150,14 @@ def _mortared(drawn: Any, ground: Any, width: float) -> Any:
 
 
 def _closed(shape: Any, width: float) -> Any:
-    """A shape with its gaps up to a width."""
+    """Morphological closing of a shape: its gaps up to a width are filled."""
     grown = shapely.buffer(shape, width / 2, join_style="mitre")
     closed = shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), shape, grid_size=GRID * width)
-    return shapely.MultiPolygon(polygonal_parts(closed))  # without the lines that narrow parts become on the grid
+    return shapely.MultiPolygon(polygonal_parts(closed))  # the grid reduces narrow parts to lines
 
 
 def _apart(drawn: Any, grid: float) -> Any:
-    """Stones without what they share with others, which is between them as mortar is."""
+    """Stones without their overlaps with others; an overlap is divided between two stones like mortar."""
     one, other = shapely.STRtree(drawn).query(drawn, predicate="intersects")
     shared: dict[int, list[Any]] = defaultdict(list)
     for a, b in zip(one, other, strict=True):

@@ -1,4 +1,4 @@
-"""Gaps and overlaps between blocks as they were drawn: found, and closed where that is asked for."""
+"""Gaps and overlaps between blocks as drawn: they are detected, and closed on request."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,26 +16,26 @@ from ..polygons import smaller_sides
 
 KEY = "wall.heal"
 
-SWEEPS = 200
-"""Most corrections of the corners; a dozen are enough where the gaps are as small beside the blocks as they may be."""
+MAX_ITERATIONS = 200
+"""Maximum number of Gauss-Newton steps; about a dozen suffice for gaps as small as `heal` permits."""
 
-ROUNDED = 1e-13
-"""Distance, in sizes of the drawing, that is rounding."""
+ROUNDING = 1e-13
+"""Distance, in sizes of the drawing, up to which it counts as a rounding error."""
 
-NOTICED = 0.01
-"""Gap between facing edges, in sizes of the smaller block, below which a joint was surely meant."""
+NARROW_GAP = 0.01
+"""Gap between facing edges, in sizes of the smaller block, below which a joint was certainly intended."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Touches:
-    """What is to coincide.
+    """Corners and edges that are to coincide.
 
     Parameters
     ----------
     node : (nv,) int
-        The node that each corner becomes, with all corners that it is to meet.
+        Node of each corner; corners that are to be merged have the same node.
     lies, low, high : (n,) int
-        A node, and the ends of the edge that it is to lie on.
+        A node, and the two end nodes of the edge that it is to lie on.
     """
 
     node: Indices
@@ -47,28 +47,28 @@ class _Touches:
 def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     """Close gaps and overlaps up to `reach` between neighbours.
 
-    Corners of two blocks that are each other's nearest become one, in their middle; those near another block's edge
-    are to lie on it. Damped Gauss-Newton steps, the least in the sum of squares, lead there: a joint along many blocks
-    becomes one straight line through their midst.
+    Two corners of different blocks that are each other's nearest are merged at their mean position. Corners near an
+    edge of another block are moved onto it, by damped Gauss-Newton steps with the least sum of squared displacements.
+    A joint along many blocks thus becomes one straight line that averages their edges.
 
     Parameters
     ----------
     polygons : list of (n, 2) float
         Blocks and ground, counter-clockwise [m].
     reach
-        Largest gap or overlap, and the furthest that a corner may move [m].
+        Largest gap or overlap to be closed, and largest displacement of a corner [m].
 
     Returns
     -------
     healed : list of (n, 2) float
     note
-        How many corners moved, and how far.
+        How many corners were moved, and how far.
 
     Raises
     ------
     SceneError
-        For a reach above a tenth of the smallest block's smaller side, or that joins corners of one block, and where
-        corners would have to move further.
+        For a reach above a tenth of the smallest block's smaller side, a reach that merges corners of one block, and
+        gaps that corners would have to move further to close.
     """
     blocks = Blocks.from_polygons(polygons)
     sides = smaller_sides([shapely.Polygon(p) for p in polygons])
@@ -77,8 +77,8 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         smallest = blocks.name(int(sides.argmin()))
         what = f"must be at most a tenth of the smallest block's smaller side, {least / 10:.4g}: that of {smallest}"
         raise SceneError(KEY, what, reach)
-    # From the drawing's middle: maps have walls a million sizes from their origin, where corners are rounded as much
-    # as gaps are to be closed.
+    # Relative to the middle of the drawing: in a map, a wall may be a million times its own size from the origin, where
+    # rounding errors of corners are as large as the gaps to be closed.
     origin = blocks.vertices.mean(axis=0)
     drawn = blocks.vertices - origin
     touches, gap = _touches(blocks, reach)
@@ -86,9 +86,9 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     number = np.bincount(touches.node)[:, None]
     nodes = np.column_stack([np.bincount(touches.node, x) for x in drawn.T]) / number
     size = float(np.ptp(drawn, axis=0).max())
-    for _ in range(SWEEPS):
+    for _ in range(MAX_ITERATIONS):
         apart = _apart(touches, nodes)
-        if np.abs(apart).max(initial=0.0) <= ROUNDED * size:
+        if np.abs(apart).max(initial=0.0) <= ROUNDING * size:
             break
         nodes = nodes + _step(touches, nodes, apart, least)
     corners = nodes[touches.node]
@@ -98,7 +98,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         at = blocks.place(blocks.vertices[worst])
         what = f"closes no gaps near {at}: the corner would move by {moved[worst]:.2g} m; draw it anew"
         raise SceneError(KEY, what, reach)
-    still = moved[:, None] <= ROUNDED * size
+    still = moved[:, None] <= ROUNDING * size
     healed = np.split(np.where(still, blocks.vertices, corners + origin), blocks.first[1:-1])
     for k in np.flatnonzero(~shapely.is_valid([shapely.Polygon(p) for p in healed])):
         raise SceneError(KEY, f"makes {blocks.name(int(k))} cross itself; choose a smaller one", reach)
@@ -110,7 +110,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
 
 
 def _check_corners(blocks: Blocks, touches: _Touches, reach: float) -> None:
-    """Refuse a reach that joins two corners of one block to each other."""
+    """Refuse a reach that merges two corners of the same block."""
     pair = np.column_stack([blocks.owner, touches.node])
     _, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
     again = np.flatnonzero(first[number.ravel()] != np.arange(len(pair)))
@@ -122,7 +122,7 @@ def _check_corners(blocks: Blocks, touches: _Touches, reach: float) -> None:
 
 
 def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
-    """What is to coincide within a reach, and how far apart it is at most [m]."""
+    """Corners and edges that are to coincide within a reach, and the largest distance between them [m]."""
     corner, other = _twins(blocks, reach)
     start = blocks.vertices
     stop = start[blocks.successor]
@@ -130,7 +130,7 @@ def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
     c, e = shapely.STRtree(lines).query(shapely.points(start), predicate="dwithin", distance=reach)
     along = stop[e] - start[e]
     place = ((start[c] - start[e]) * along).sum(axis=1) / (along**2).sum(axis=1)
-    # A corner that has a twin on the edge's block meets it there, not beside it.
+    # A corner that is merged with a twin on the edge's block is not moved onto the edge as well.
     n = len(blocks)
     pairs = np.concatenate([corner * n + blocks.owner[other], other * n + blocks.owner[corner]])
     taken = np.isin(c * n + blocks.owner[e], pairs)
@@ -144,7 +144,7 @@ def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
 
 
 def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:
-    """Corners of two blocks each of which is the other block's nearest."""
+    """Pairs of corners of two blocks, each being its block's nearest corner to the other."""
     pairs = cKDTree(blocks.vertices).query_pairs(reach, output_type="ndarray")
     pairs = np.vstack([pairs, pairs[:, ::-1]])
     a, b = pairs[blocks.owner[pairs[:, 0]] != blocks.owner[pairs[:, 1]]].T
@@ -160,14 +160,14 @@ def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:
 
 
 def _apart(touches: _Touches, nodes: Array) -> Array:
-    """Distances of nodes from the lines of the edges that they are to lie on, to their left, ``(n,)`` [m]."""
+    """Signed distances ``(n,)`` [m] of nodes from the lines of the edges to lie on, positive to the left."""
     _, normal = _place(touches, nodes)
     found: Array = ((nodes[touches.lies] - nodes[touches.low]) * normal).sum(axis=1)
     return found
 
 
 def _place(touches: _Touches, nodes: Array) -> tuple[Array, Array]:
-    """Where nodes lie along their edges, in lengths of these, ``(n,)``; the edges' normals, ``(n, 2)``."""
+    """Positions ``(n,)`` of nodes along their edges, relative to the edge lengths; normals of the edges ``(n, 2)``."""
     along = nodes[touches.high] - nodes[touches.low]
     length = np.hypot(*along.T)[:, None]
     place = ((nodes[touches.lies] - nodes[touches.low]) * along / length**2).sum(axis=1)
@@ -175,10 +175,10 @@ def _place(touches: _Touches, nodes: Array) -> tuple[Array, Array]:
 
 
 def _step(touches: _Touches, nodes: Array, apart: Array, length: float) -> Array:
-    """Motion of all nodes that closes what is apart, but for a damping that fades as that does, ``(nn, 2)`` [m].
+    """Gauss-Newton step ``(nn, 2)`` [m] of all nodes that closes the distances `apart`; its damping fades with these.
 
-    Conditions of which one follows from the others contradict each other a little for as long as edges are not in
-    line; undamped, they would move the corners by much.
+    Redundant conditions contradict each other slightly until the edges are collinear; without damping they would move
+    the corners far.
     """
     place, normal = _place(touches, nodes)
     values, columns = [], []
@@ -194,24 +194,24 @@ def _step(touches: _Touches, nodes: Array, apart: Array, length: float) -> Array
 
 
 def missed_joints(polygons: Sequence[Array], healed: float = 0.0) -> str:
-    """Say what the widest gap is that keeps facing edges from a joint, where there is one too small to be meant.
+    """Note on the widest gap that prevents a joint and is too narrow to be intended; empty if there is none.
 
     Parameters
     ----------
     polygons : list of (n, 2) float
         Blocks and ground, counter-clockwise [m].
     healed
-        Gaps up to this were to be closed [m].
+        Gaps up to this width should already be closed [m].
     """
     blocks = Blocks.from_polygons(polygons)
     start = blocks.vertices
     stop = start[blocks.successor]
-    reach = NOTICED * np.sqrt(blocks.area)[blocks.owner][:, None]
+    reach = NARROW_GAP * np.sqrt(blocks.area)[blocks.owner][:, None]
     a, b = touching_boxes(np.minimum(start, stop) - reach, np.maximum(start, stop) + reach)
     a, b = a[blocks.owner[a] != blocks.owner[b]], b[blocks.owner[a] != blocks.owner[b]]
     along, length = stop - start, np.hypot(*(stop - start).T)
     along = along / length[:, None]
-    facing = (along[a] * along[b]).sum(axis=1) < -1 + NOTICED**2
+    facing = (along[a] * along[b]).sum(axis=1) < -1 + NARROW_GAP**2
     a, b = a[facing], b[facing]
     low, high = ((p[b] - start[a]) for p in (stop, start))
     s_low, s_high = (low * along[a]).sum(axis=1), (high * along[a]).sum(axis=1)
@@ -230,6 +230,6 @@ def missed_joints(polygons: Sequence[Array], healed: float = 0.0) -> str:
     first, second = sorted((int(blocks.owner[a[k]]), int(blocks.owner[b[k]])))
     between = f"{blocks.name(first)} and {blocks.name(second)}"
     remedy = f"[wall] heal = {enough:.2g} would close it"
-    if gap[k] <= healed:  # a corner beside an edge's end has neither a corner to meet nor an edge to lie on
+    if gap[k] <= healed:  # a corner past an edge's end has no corner to merge with and no edge to move onto
         remedy = f"{KEY} = {healed:.2g} leaves it open; draw the corners there anew"
     return f"a gap of {gap[k]:.2g} m between {between} leaves no joint there; {remedy}"

@@ -1,4 +1,4 @@
-"""Lines and open curves joined into outlines: the areas that they enclose, as many of them as are blocks."""
+"""Lines and open curves joined into outlines: the enclosed areas that are blocks."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -12,8 +12,8 @@ from ..arrays import Array, Indices, Mask, components
 from ..errors import SceneError, place
 from .dxf import KEY
 
-NEAR = 0.01
-"""Gap between a line's end and the next line, in lengths of the longest, that was surely to be none."""
+NEAR_MISS = 0.01
+"""Gap between a line's end and the next line, relative to the longest line, below which they were meant to meet."""
 
 
 def join(
@@ -21,8 +21,8 @@ def join(
 ) -> tuple[list[Array], list[int], str]:
     """Join the open curves of one layer into outlines.
 
-    Where every line has as many neighbours as it was drawn times, each block has its own outline, and an enclosed
-    area that none goes round is an opening. Otherwise neighbours share lines, and every enclosed area is a block.
+    If every line was drawn once for each block beside it, every block has its own outline, and an enclosed area
+    without an outline is an opening. Otherwise neighbours share lines, and every enclosed area is a block.
 
     Parameters
     ----------
@@ -31,23 +31,23 @@ def join(
     curves : list of (n, 2) float
         Open curves.
     outlines : list of (n, 2) float
-        Closed curves of the layer, which lines that end on them cut.
+        Closed curves of the layer, which are cut where lines end on them.
     tolerance
-        Distance below which ends meet.
+        Distance up to which ends count as meeting.
 
     Returns
     -------
     found : list of (n, 2) float
         Outlines.
     cut : list of int
-        Outlines given that are replaced by the found ones.
+        Numbers of the given outlines that `found` replaces.
     note
-        How the lines were read.
+        How the lines were interpreted.
 
     Raises
     ------
     SceneError
-        For a loop that does not close, with the places of its ends.
+        For a loop that is not closed, with the positions of its ends.
     """
     edges, loose = _network(curves, tolerance)
     size = float(np.ptp(np.vstack(curves), axis=0).max())
@@ -80,17 +80,17 @@ def join(
 
 
 def _missed(end: Array, edges: Array) -> str:
-    """By how little an end ``(2,)`` misses the next of some edges ``(n, 2, 2)``, where it surely was to meet it."""
+    """Text for the gap between an end ``(2,)`` and the nearest of the edges ``(n, 2, 2)``; empty if it is wide."""
     own = (edges == end).all(axis=2).any(axis=1)
     if own.all():
         return ""
     gap = float(shapely.distance(shapely.Point(end), shapely.linestrings(edges[~own])).min())
     length = float(np.hypot(*np.ptp(edges[~own], axis=1).T).max())
-    return f", where a line ends {gap:.2g} drawing units from the next one" if gap < NEAR * length else ""
+    return f", where a line ends {gap:.2g} drawing units from the next one" if gap < NEAR_MISS * length else ""
 
 
 def _network(curves: Sequence[Array], tolerance: float) -> tuple[Array, Array]:
-    """Edges ``(n, 2, 2)`` between all crossings and corners of curves, and the ends ``(m, 2)`` that meet nothing."""
+    """Edges ``(n, 2, 2)`` between all crossings and corners of curves, and the loose ends ``(m, 2)``."""
     points = np.vstack(curves)
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
     group = components(pairs, len(points))
@@ -110,7 +110,7 @@ def _network(curves: Sequence[Array], tolerance: float) -> tuple[Array, Array]:
 
 
 def _split_at_corners(points: Array, corners: Indices, ends: Indices, tolerance: float) -> Indices:
-    """Split edges, pairs of points, at corners that lie on them to within the tolerance, ``(n, 2)``."""
+    """Split edges (pairs of point numbers) at corners that lie on them to within the tolerance, ``(n, 2)``."""
     lines = shapely.linestrings(points[ends])
     line, at = shapely.STRtree(shapely.points(points[corners])).query(lines, predicate="dwithin", distance=tolerance)
     at = corners[at]
@@ -127,10 +127,10 @@ def _split_at_corners(points: Array, corners: Indices, ends: Indices, tolerance:
 
 
 def _own_outlines(faces: Array, edges: Array, curves: Sequence[Array], tolerance: float) -> Mask | None:
-    """Faces that have outlines of their own, ``(nf,)`` bool; None where neighbours share lines.
+    """Whether each face has an outline of its own, ``(nf,)`` bool; None if neighbours share lines.
 
-    An edge was drawn once for each of its blocks: whether the areas beside it are blocks follows from the outermost
-    edges inwards, and lines that are shared contradict themselves.
+    If no lines are shared, an edge was drawn once for each block beside it. These counts then decide which faces are
+    blocks, from the outermost edges inwards. Shared lines lead to a contradiction.
     """
     drawn = shapely.linestrings(np.vstack([np.stack([curve[:-1], curve[1:]], axis=1) for curve in curves]))
     middle = shapely.points(edges.mean(axis=1))

@@ -1,4 +1,4 @@
-"""Lines of points as far from one stone as from another, as straight as joints are."""
+"""Middle lines between stones: points equidistant from two stones, straightened like joints."""
 
 from collections import defaultdict
 from typing import Any, TypeAlias
@@ -10,34 +10,34 @@ from scipy.spatial import Voronoi
 from ..arrays import Array, Indices
 
 SAMPLED = 1 / 6
-"""How far samples on stones' sides are apart, in joints' largest widths: lines between their cells leave the middle by
-less than a hundredth of that in a wide joint."""
+"""Spacing of the samples on the sides of stones, relative to the width of the widest joint: in a wide joint, lines
+between their Voronoi cells are off the middle by less than a hundredth of that width."""
 
 STRAIGHTENED = 0.1
-"""How far a joint's line may be from the middle of the mortar, in joints' largest widths."""
+"""Largest deviation of a joint's line from the middle of the mortar, relative to the width of the widest joint."""
 
-BUMP = 0.8
-"""How far from a junction the middle of a joint that goes on through it is no part of its line, in largest widths: at
-the end of a head joint it is an eighth of a width higher, on which nothing has to climb. At faces it bends as well."""
+BUMP_RADIUS = 0.8
+"""Distance from a junction, in largest widths, within which the middle of a joint that continues through it is ignored:
+at the end of a head joint it bulges by an eighth of a width, which no block has to climb. It bends at faces too."""
 
-THROUGH = -0.8
-"""Cosine of the angle between two of the lines that meet in a point from which on they are one, with a third beside."""
+CONTINUOUS_COSINE = -0.8
+"""Cosine of the angle between two lines at a junction of three or more, below which they are one continuous line."""
 
-PAST, PAST_FACES = 1.0, 1.5
-"""How far a line goes on past its end on another one, or near a face, which cuts it there, in largest widths."""
+EXTENSION, EXTENSION_AT_FACES = 1.0, 1.5
+"""Extension of a line past its end at a continuous line, or near a face, in largest widths; it is trimmed there."""
 
 REACH = 2.5
-"""How far from other stones samples are of use, in largest widths."""
+"""Distance from other stones up to which samples are used, in largest widths."""
 
 Junction: TypeAlias = tuple[float, float]
-"""Where lines end [m]."""
+"""Point where lines end [m]."""
 
 End: TypeAlias = tuple[int, int]
-"""The number of a line and one of its sides: 0 is where it starts, 1 where it stops."""
+"""Number of a line, and which of its ends: 0 is its start, 1 its stop."""
 
 
 def middle_lines(inner: Any, whole: Any, width: float) -> list[Any]:
-    """Lines of points as far from one stone as from another, within the wall and a little beyond, between junctions."""
+    """Lines between junctions, equidistant from two stones, inside the wall and a little beyond it."""
     at, owner = _samples(inner, width)
     if not len(at):
         return []
@@ -55,7 +55,7 @@ def middle_lines(inner: Any, whole: Any, width: float) -> list[Any]:
 
 
 def _samples(inner: Any, width: float) -> tuple[Array, Indices]:
-    """Points on the sides of stones that others are near, ``(n, 2)`` [m], and their stones ``(n,)``."""
+    """Points ``(n, 2)`` [m] on the sides of stones that are near other stones, and their stones ``(n,)``."""
     rings = shapely.boundary(shapely.segmentize(inner, SAMPLED * width))
     at, owner = shapely.get_coordinates(rings, return_index=True)
     near, stone = shapely.STRtree(inner).query(shapely.points(at), predicate="dwithin", distance=REACH * width)
@@ -64,7 +64,7 @@ def _samples(inner: Any, width: float) -> tuple[Array, Indices]:
 
 
 def _between_cells(at: Array, owner: Indices, width: float) -> tuple[Array, Indices]:
-    """Sides that Voronoi cells of two stones' samples share, ``(n, 2, 2)`` [m], and the stones ``(n, 2)``, in order."""
+    """Sides ``(n, 2, 2)`` [m] shared by Voronoi cells of two stones' samples, and these stones ``(n, 2)``, sorted."""
     low, high = at.min(axis=0), at.max(axis=0)
     far = float((high - low).max()) + width
     frame = (low + high) / 2 + 2 * far * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
@@ -72,22 +72,22 @@ def _between_cells(at: Array, owner: Indices, width: float) -> tuple[Array, Indi
     pair = np.append(owner, np.full(len(frame), -1))[diagram.ridge_points]
     ends = np.array(diagram.ridge_vertices)
     between = (pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & (ends >= 0).all(axis=1)
-    # Where four samples lie on a circle, corners of their cells differ by rounding alone.
+    # If four samples lie on a circle, two corners of their cells coincide except for rounding errors.
     segments = np.round(diagram.vertices[ends[between]] / far, 12) * far
     return segments, np.sort(pair[between], axis=1)
 
 
 def _in_the_middle(lines: Any, stones: Any) -> Any:
-    """Lines, each between its two stones ``(n, 2)``, whose corners but the ends are as far from one as from the other.
+    """Lines, each between two stones ``(n, 2)``, with all corners except the ends moved to equal distance from both.
 
-    Those of samples' cells are so within a hundredth of the widest joint, of which a bed's line would lean.
+    Corners of the samples' cells are off by up to a hundredth of the widest joint, which would tilt bed joints.
     """
     corners, line = shapely.get_coordinates(lines, return_index=True)
     inner = np.zeros(len(corners), dtype=bool)
     inner[1:-1] = (line[:-2] == line[1:-1]) & (line[1:-1] == line[2:])
     at, sides = corners[inner], stones[line[inner]]
     shapely.prepare(stones)
-    for _ in range(2):  # the first time, it is there already between straight sides
+    for _ in range(2):  # between straight sides the first step is exact
         apart, away = [], []
         for stone in sides.T:
             line_there = shapely.shortest_line(stone, shapely.points(at))
@@ -102,14 +102,14 @@ def _in_the_middle(lines: Any, stones: Any) -> Any:
 
 
 def straightened(lines: list[Any], width: float) -> list[Any]:
-    """The lines, each as straight as it may be, those that are one through a junction as one."""
+    """Straighten the lines, after joining those that continue each other through a junction."""
     ends = _ends(lines, width)
     partner = _partners(ends)
     bumps = {at for at, there in ends.items() if any(end in partner for end, _ in there)}
     faces = {at for at, there in ends.items() if len(there) == 1}
-    free = dict.fromkeys(bumps, PAST) | dict.fromkeys(faces, PAST_FACES)
+    free = dict.fromkeys(bumps, EXTENSION) | dict.fromkeys(faces, EXTENSION_AT_FACES)
     found, seen = [], set[int]()
-    # From ends that nothing goes on from; what is left over runs in circles.
+    # Paths start at ends without a continuation; the lines left over form closed loops.
     starts = [(k, side) for k in range(len(lines)) for side in (0, 1) if (k, side) not in partner]
     for start in (*starts, *((k, 0) for k in range(len(lines)))):
         if start[0] not in seen:
@@ -121,7 +121,7 @@ def straightened(lines: list[Any], width: float) -> list[Any]:
 
 
 def _ends(lines: list[Any], width: float) -> dict[Junction, list[tuple[End, Array]]]:
-    """Where lines end: the number and the side of each line that does there, and its direction away from there."""
+    """All points where lines end, each with the ends of lines there and their unit directions away from it."""
     found: dict[Junction, list[tuple[End, Array]]] = defaultdict(list)
     for k, line in enumerate(lines):
         corners, length = shapely.get_coordinates(line), min(width, float(line.length) / 2)
@@ -132,20 +132,20 @@ def _ends(lines: list[Any], width: float) -> dict[Junction, list[tuple[End, Arra
 
 
 def _partners(ends: dict[Junction, list[tuple[End, Array]]]) -> dict[End, End]:
-    """The end with which each end of a line goes on, if it does, at junctions of three lines or more."""
+    """The end that continues each end of a line, if there is one, at junctions of three or more lines."""
     partner: dict[End, End] = {}
     for there in ends.values():
         if len(there) < 3:
             continue
         pairs = [(float(u @ v), a, b) for i, (a, u) in enumerate(there) for b, v in there[i + 1 :]]
         for cosine, a, b in sorted(pairs):
-            if cosine < THROUGH and a not in partner and b not in partner:
+            if cosine < CONTINUOUS_COSINE and a not in partner and b not in partner:
                 partner |= {a: b, b: a}
     return partner
 
 
 def _path(lines: list[Any], partner: dict[End, End], start: End, seen: set[int]) -> Array:
-    """Corners of the lines that are one from an end on, ``(n, 2)``."""
+    """Corners ``(n, 2)`` of the continuous line that begins with an end."""
     parts, end = list[Array](), start
     while end[0] not in seen:
         k, side = end
@@ -157,10 +157,10 @@ def _path(lines: list[Any], partner: dict[End, End], start: End, seen: set[int])
 
 
 def _simplified(corners: Array, bumps: Array, free: dict[Junction, float], width: float) -> Any:
-    """A line with as few corners ``(n, 2)`` as it may have, without those near bumps ``(k, 2)``, past its free ends."""
+    """A line with as few corners as possible, none of them near bumps ``(k, 2)``, extended past its free ends."""
     past = [width * free.get(tuple(at), 0.0) for at in corners[[0, -1]]]
     apart = np.hypot(*(corners[:, None] - bumps).transpose(2, 0, 1)).min(axis=1, initial=np.inf)
-    stays = apart > BUMP * width
+    stays = apart > BUMP_RADIUS * width
     stays[[0, -1]] |= apart[[0, -1]] > 0
     stays[[0, -1]] |= stays.sum() < 2
     straight = shapely.get_coordinates(shapely.simplify(shapely.linestrings(corners[stays]), STRAIGHTENED * width))
@@ -172,6 +172,6 @@ def _simplified(corners: Array, bumps: Array, free: dict[Junction, float], width
 
 
 def _beyond(start: Array, end: Array, to: Array, past: float) -> Array:
-    """Where a side that goes on in its own direction is so far past a point ``(2,)`` [m]."""
+    """Point on the extension of a side, at the distance `past` [m] beyond the projection of a point ``(2,)`` on it."""
     along = (end - start) / np.hypot(*(end - start))
     return np.asarray(start + (max(0.0, float((to - start) @ along)) + past) * along)

@@ -1,1 +1,1 @@
-"""Accuracy against cost: every model and its parameters on walls whose answer is known, timed and drawn."""
+"""Accuracy against cost: all models and their parameters on walls with a known answer, timed and plotted."""

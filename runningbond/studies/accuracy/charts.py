@@ -1,4 +1,4 @@
-"""Charts of the study: error against cost, growth with the number of blocks, and the price of stiff blocks."""
+"""Charts of the study: error against cost, growth with the number of blocks, and the cost of stiff blocks."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -20,17 +20,17 @@ from .parameters import VARIED
 from .tables import CHANGED, exponent, growth, stiffness
 from .walls import all_walls
 
-FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and the end of the axis
-RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1  # with three freedoms; apart by
+FLOOR, TOP = 1e-4, 3.0  # smallest error drawn, also for zero, and the end of the axis
+RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1  # rigid blocks; factor between marks
 
 Named: TypeAlias = tuple[float, float, str, str]  # a point of a chart, the name to write beside it, and its colour
 NAMES: dict[str, Any] = {"xycoords": "figure points", "textcoords": "figure points", "annotation_clip": False}
 NAMES |= {"ha": "center", "va": "center", "fontsize": 8}
-NAMES["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # over lines
+NAMES["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # readable over lines
 LEGEND_ROWS = 3
 DRIVEN = "driven, steps"
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
-MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))  # of the parameters; a model as it is has the first one, filled
+MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))  # by parameter; an unchanged model has the first, filled
 TITLES = {
     "stack-of-5": "stack of five blocks, exact",
     "wall-w1-inset": "wall W1, published to four digits",
@@ -42,8 +42,8 @@ TITLES = {
 def draw_errors(
     draw: Callable[[Axes, Sequence[Row]], "list[Named]"], cost: str, what: str, figure: Figure, rows: Rows
 ) -> None:
-    """Error against a cost, wall by wall."""
-    drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != "homog"]  # which costs nothing
+    """Plot error against a cost, one axes per wall."""
+    drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != "homog"]  # homog costs nothing
     judged = [row for row in drawn if row.get("error") is not None]
     named: list[tuple[Axes, list[Named]]] = []
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
@@ -54,15 +54,15 @@ def draw_errors(
         axes.set_xlabel(what)
         axes.set_ylabel("relative error of λ" if axes.get_subplotspec().is_first_col() else "")
     _legend(figure, judged)
-    figure.draw_without_rendering()  # marks have their places from here on
+    figure.draw_without_rendering()  # fixes the positions of the marks
     for axes, points in named:
         _name(axes, points)
 
 
 def _name(axes: Axes, points: Sequence[Named]) -> None:
-    """Write names beside their marks, where they hide neither marks nor each other, with a line from one to the other.
+    """Write names beside their marks without covering marks or other names; a line leads to a mark that is not near.
 
-    Points without a name are in the way only.
+    Points without a name only block space.
     """
     point = 72 / axes.figure.dpi
     places = point * axes.transData.transform([(x, y) for x, y, *_ in points])
@@ -82,7 +82,7 @@ def _name(axes: Axes, points: Sequence[Named]) -> None:
 
 
 def _against_seconds(axes: Axes, rows: Sequence[Row]) -> list[Named]:
-    """On the second axis in those of the limit program on the same wall."""
+    """Plot errors against CPU seconds; the second axis is relative to the limit program on the same wall."""
     seconds = [row["cpu_s"] for row in rows]
     named = _draw_errors(axes, rows, seconds, seconds)
     unit = next((row["cpu_s"] for row in rows if row["model"] == REFERENCE), None)
@@ -93,7 +93,7 @@ def _against_seconds(axes: Axes, rows: Sequence[Row]) -> list[Named]:
 
 
 def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> list[Named]:
-    """Models with the same number of them stand side by side."""
+    """Plot errors against degrees of freedom; models with equally many are drawn side by side."""
     freedoms = [float(row["dofs"]) for row in rows]
     aside = {model: ASIDE ** (i - (len(RIGID) - 1) / 2) for i, model in enumerate(RIGID)}
     beside = [x * aside.get(row["model"], 1.0) for x, row in zip(freedoms, rows, strict=True)]
@@ -107,7 +107,7 @@ def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> list[Named]:
 
 
 def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequence[float]) -> list[Named]:
-    """Draw errors at `x`, next to their `cost`, and the front of those that nothing beats; points with their names."""
+    """Draw errors at `x`, near their `cost`, and the Pareto front of the costs; returns the points with their names."""
     y, right = [max(row["error"], FLOOR) for row in rows], 3 * max(x)
     axes.set(xscale="log", yscale="log", xlim=(min(x) / 2, right), ylim=(FLOOR / 1.8, TOP))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
@@ -122,7 +122,7 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequ
         hollow: dict[str, Any] = {"color": "none", "mec": colour, "mew": 1.5, "ms": 9 if driven else 7, "zorder": 2}
         filled: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.8, "ms": 11, "zorder": 3}
         axes.plot(at, error, MARKS[row["parameter"]], **(hollow if row["parameter"] else filled))
-        # A setting that changes the error is named.
+        # Only settings that change the error are named.
         changed = row["parameter"] and not 1 / CHANGED < error / plain.get(row["model"], error) < CHANGED
         named.append((at, error, row["setting"] if changed else "", colour))
     axes.grid(which="major", color="0.9", lw=0.7)
@@ -130,7 +130,7 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequ
 
 
 def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
-    """Points that no other point beats in both cost and error, the cheapest first; of equal ones the first."""
+    """Points that no other point beats in both cost and error, the cheapest first; the first one of equal points."""
     front: list[int] = []
     for i in sorted(range(len(cost)), key=lambda i: (cost[i], error[i], i)):
         if not front or error[i] < error[front[-1]]:
@@ -152,7 +152,7 @@ def _legend(figure: Figure, rows: Sequence[Row]) -> None:
 
 
 def draw_growth(figure: Figure, rows: Rows) -> None:
-    """Processor seconds against the number of blocks, with fitted slopes."""
+    """Plot CPU seconds against the number of blocks, with fitted slopes."""
     axes = figure.add_subplot(xscale="log", yscale="log")
     result = growth(rows)
     sizes = sorted({row["blocks"] for own in result.values() for row in own})
@@ -175,7 +175,7 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
 
 
 def draw_stiffness(figure: Figure, rows: Rows) -> None:
-    """Processor seconds a physical second against Young's modulus of the blocks."""
+    """Plot CPU seconds per physical second against Young's modulus of the blocks."""
     axes = figure.add_subplot(xscale="log", yscale="log")
     (scaled, plain, rigid), (colour, _) = stiffness(rows), MODEL_LOOKS["fem"]
     looks: dict[str, Any] = {"color": colour, "ms": 8, "lw": 2}

@@ -1,4 +1,4 @@
-"""One case of the study: what a model answers, what that takes, and how much memory."""
+"""Measurement of one case of the study: the answer of a model, its time and its memory."""
 
 import os
 import platform
@@ -19,15 +19,16 @@ from .parameters import settings_of
 from .questions import AnswerRow, ask
 from .walls import StudiedWall, accuracy_walls, all_walls, error
 
-RUNS, CHEAP = 3, 2.0  # timed runs of a case of which one takes no more processor seconds than that; else one
-REFERENCE = "limit"  # its processor seconds on the same wall are the unit of ratios, which hold on every machine
+RUNS, CHEAP = 3, 2.0  # number of timed runs, if the first takes at most so many CPU seconds; else one
+REFERENCE = "limit"  # its CPU time on the same wall is the unit of cost ratios, which are valid on every machine
 
 
 def measure(name: str, model: str, parameter: str, setting: str) -> Row:
-    """Measure a case in this process, after an untimed run on a small wall of the same kind that loads the kernels.
+    """Measure a case in this process, after an untimed run that loads the kernels.
 
-    The row has what is known of the wall, the `AnswerRow` and its relative error; median, least and most seconds of
-    timed runs by the clock, of the processor, and in those of `REFERENCE` just before; and the most memory they took
+    The untimed run is on a small stack for collapse loads, and on the wall itself for other questions. The row contains
+    what is known of the wall, the `AnswerRow` and its relative error; median, smallest and largest value over the timed
+    runs of wall-clock time, CPU time, and CPU time relative to that of `REFERENCE` just before; and the peak memory
     [MB].
     """
     wall, settings = all_walls()[name], settings_of(model, parameter, setting)
@@ -61,7 +62,7 @@ def measure(name: str, model: str, parameter: str, setting: str) -> Row:
 
 
 def _timed(wall: StudiedWall, model: str, settings: dict[str, Any]) -> tuple[AnswerRow, float, float]:
-    """An answer, and its seconds by the clock and of the processor."""
+    """An answer, and its wall-clock and CPU seconds."""
     clock, processor = time.perf_counter(), time.process_time()
     result = ask(wall.question, model, wall.scene, settings)
     return result, time.perf_counter() - clock, time.process_time() - processor
@@ -69,7 +70,7 @@ def _timed(wall: StudiedWall, model: str, settings: dict[str, Any]) -> tuple[Ans
 
 @cache
 def machine() -> str:
-    """Processor, cores, system and Python; not whose it is."""
+    """Processor, cores, system and Python; nothing that identifies the owner."""
     processor = platform.processor() or platform.machine()
     with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text().splitlines()
@@ -78,16 +79,16 @@ def machine() -> str:
 
 
 def start_of_memory() -> float:
-    """Begin to watch for the most memory from here on, where the system can; returns what is held now [bytes]."""
+    """Reset the peak of the memory if the system allows it; returns the memory at the start [bytes]."""
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5")
     return most_memory()
 
 
 def most_memory() -> float:
-    """The most memory that this process has held [bytes].
+    """Peak memory of this process [bytes].
 
-    Linux counts towards `ru_maxrss` what a process's parent held when it began, and keeps another mark without that.
+    On Linux `ru_maxrss` includes the memory that the parent process had at the start; ``VmHWM`` does not.
     """
     with suppress(OSError):
         for line in Path("/proc/self/status").read_text().splitlines():

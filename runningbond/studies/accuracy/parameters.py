@@ -1,4 +1,4 @@
-"""The parameters of each model that are varied, one at a time, beside the model as it is."""
+"""The parameters of each model that are varied, one at a time, in comparison with its defaults."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,20 +7,20 @@ from runningbond.joints import gauss, lobatto
 from runningbond.models import MODELS
 
 VARIED = ("stack-of-5", "wall-w1-inset", "wall-w3-inset", "panel-02")  # walls on which parameters are varied
-COLLAPSE = tuple(name for name in MODELS if name != "homog")  # models that answer for any wall, the cheapest first
-# rigid blocks, uniform strains, all displacements up to third degree, and all of the constant-strain triangles
+COLLAPSE = tuple(name for name in MODELS if name != "homog")  # models for any wall, the cheapest first
+# rigid blocks, uniform strains, displacements up to the third degree, and all modes of constant-strain triangles
 MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3, 6, 20, "all")}
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of some models that is varied."""
+    """A parameter that is varied, with the models that have it."""
 
     name: str
     models: tuple[str, ...]
-    settings: dict[str, dict[str, Any]]  # arguments of the model by the name of each setting
+    settings: dict[str, dict[str, Any]]  # arguments of the model, by name of the setting
     walls: tuple[str, ...] = VARIED
-    expensive: tuple[str, ...] = ()  # settings that are tried on the first two walls alone
+    expensive: tuple[str, ...] = ()  # settings that are tried only on the first two walls
 
 
 IN_MOTION = ("dem-dynamic", "fem")
@@ -46,7 +46,7 @@ PARAMETERS = (  # what is varied, and where; three Lobatto points are Simpson's 
 
 
 def settings_of(model: str, parameter: str, setting: str) -> dict[str, Any]:
-    """Arguments of a model by which a parameter has a setting; none where no parameter is named."""
+    """Arguments of a model for a setting of a parameter; empty if no parameter is named."""
     for each in PARAMETERS if parameter else ():
         if each.name == parameter and model in each.models and setting in each.settings:
             return each.settings[setting]

@@ -1,4 +1,4 @@
-"""Questions that a model is asked about a wall, as it is or with a parameter changed."""
+"""Questions that a model answers about a wall, with its defaults or with one parameter changed."""
 
 import statistics
 import time
@@ -21,16 +21,16 @@ from runningbond.scene import Scene, SceneError, Stiffness
 from .walls import TURNED, Question
 
 DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes
-STEPS, RUNS = 2000, 5  # time steps of a measurement of their cost, and measurements
-SETTLED = 1e-3  # by how much of λ half the speed may change the curve of the turned block
-SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner
+STEPS, RUNS = 2000, 5  # number of time steps in a cost measurement, and of measurements
+SETTLED = 1e-3  # relative change of λ at half the speed below which the curve of the turned block has converged
+SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; soft joints allow long steps and barely move its corner
 
 
 class AnswerRow(NamedTuple):
-    """What a model said, as columns of the study's table."""
+    """The answer of a model, as columns of the study's table."""
 
-    status: str  # of `runningbond.results.Outcome`, or ``not applicable`` where the model has nothing to say
-    value: float | None = None  # what was asked for, and its bracket
+    status: str  # of `runningbond.results.Outcome`, or ``not applicable`` if the model cannot answer
+    value: float | None = None  # requested quantity, and its bracket
     lower: float | None = None
     upper: float | None = None
     dofs: int | None = None
@@ -39,7 +39,7 @@ class AnswerRow(NamedTuple):
 
 
 def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> AnswerRow:
-    """Ask a model a question about a scene, with arguments of the model from `parameters`."""
+    """Answer of a model to a question about a scene, with arguments of the model from `parameters`."""
     try:
         return QUESTIONS[question](model, scene, **settings)
     except SceneError as reason:
@@ -47,7 +47,7 @@ def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) 
 
 
 def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings: Any) -> AnswerRow:
-    if "drive" in settings:  # the peak under work-conjugate displacement control, at a speed that some steps give
+    if "drive" in settings:  # peak under work-conjugate displacement control; the number of steps sets the speed
         system, distance = _system(model, scene), DRIVEN * scene.block_size
         result = _drive(system, scene, distance, settings["drive"])
         speed = f"largest λ while driven {1e3 * distance:.3g} mm"
@@ -69,7 +69,7 @@ def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: 
 
 
 def _turned(model: str, scene: Scene, **settings: Any) -> AnswerRow:
-    """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
+    """λ of one block that has rotated by `TURNED`, from a parabola fitted to its curve around that rotation."""
     scene = scene.with_joint(elasticity=Stiffness(SOFT, SOFT))
     height = scene.lowest_block
     distance = height * np.sin(1.5 * TURNED)
@@ -80,7 +80,7 @@ def _turned(model: str, scene: Scene, **settings: Any) -> AnswerRow:
         pushed = _drive(system, scene, distance, settings["drive"])
         turned, multiplier = pushed.curve[:, 0] / height, pushed.curve[:, 1]
         dofs, steps = system.freedoms, pushed.state.steps
-        turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
+        turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # λ is the mean since the previous row
     else:
         said = MODELS[model].solve(scene, SETTLED, displacements="finite", distance=distance)
         # The control point stands above the corner about which the block turns.
@@ -102,7 +102,7 @@ def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCo
 
 
 def _physical_second(model: str, scene: Scene, **settings: Any) -> AnswerRow:
-    """Processor seconds that a second of the wall's time takes, with the spread of the measurements."""
+    """CPU seconds per simulated second, with the range of the measurements."""
     system = _system(model, scene, **settings)
     run, state = Run(system), State.at_rest(system)
     run.hold(state, 0.2, STEPS)

@@ -1,4 +1,4 @@
-"""The study of accuracy against cost: its cases, and how its page tells of them."""
+"""The study of accuracy against cost: its cases, and its page."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -21,32 +21,32 @@ from .walls import StudiedWall, accuracy_walls, all_walls, growth_walls, stiffne
 ELASTIC = ("homog", "dem-static", "fem")
 ASKED = {"collapse": ("homog", *COLLAPSE), "turned block": IN_MOTION, "compression": ELASTIC, "shear": ELASTIC}
 ASKED |= {"physical second": ("fem",)}
-HOW = (  # the study is made, for its reader
-    "Walls with an exact answer are a block that topples, one that slides and a stack, λ = min(tan φ, b / (n h)); a "
-    "block that has turned by θ, λ = tan(α − θ); and periodic cells. W1 – W3 of Ferris & Tin-Loi have their contacts "
-    f"{1e3 * INSET:g} mm in from the ends of the joints, with which λ is unique, and are published to four digits. Of "
-    "the panels the answer is the interval of loads that `limit-nonassociated` certifies: the error is the distance "
-    "from it, and zero inside, where nothing can be said against any load; smaller loads are not excluded. A model is "
-    "not judged by its own certificates.",
-    "The error is that of the multiplier which a model reports: the middle of a bracket of `dem-dynamic` and `fem`, "
-    "the lower end of one of `limit-nonassociated` and `dem-static`. Parameters are changed one at a time: without, "
-    f"`fem` has two Lobatto points a joint element, one cell in half a block, {BENDING} modes and scaled masses, "
-    "brackets are 1 % wide, and loads are held until the wall rests or falls. *Driven* walls are pushed at a "
-    "prescribed work-conjugate speed instead, in so many time steps over a twentieth of a block if all of it moved "
-    "as far, and λ is the largest on the way.",
-    "Every case runs in a process of its own, on one thread, after an untimed run that loads the kernels: "
-    f"{RUNS} times, or once if it takes more than {CHEAP:g} s; seconds are medians, of the processor. Ratios are to "
-    f"`{REFERENCE}` on the same wall, run in turn in the same process. A run that would take more than {LONGEST} s is "
-    "broken off and left out.",
+HOW = (  # text of the page: how the study is made
+    "Walls with an exact answer are a block that topples, a block that slides and a stack, λ = min(tan φ, b / (n h)); "
+    "a block that is rotated by θ, λ = tan(α − θ); and periodic cells. The contacts of W1 – W3 of Ferris & Tin-Loi lie "
+    f"{1e3 * INSET:g} mm in from the ends of the joints, with which λ is unique; their λ is published to four digits. "
+    "For the panels the answer is the interval of loads that `limit-nonassociated` certifies: the error is the "
+    "distance from this interval, and zero inside it, where no load can be called wrong; loads below it are not "
+    "excluded. A model is not judged by its own certificates.",
+    "The error is that of the multiplier which a model reports: the middle of the bracket for `dem-dynamic` and `fem`, "
+    "its lower end for `limit-nonassociated` and `dem-static`. Parameters are changed one at a time; otherwise `fem` "
+    f"has two Lobatto points per joint element, one cell in half a block, {BENDING} modes and scaled masses, brackets "
+    "are 1 % wide, and loads are held until the wall rests or falls. *Driven* walls are pushed at a prescribed "
+    "work-conjugate speed instead, in the given number of time steps for a twentieth of a block if all of the wall "
+    "moved as far, and λ is the largest value on the way.",
+    "Every case runs in its own process on one thread, after an untimed run that loads the kernels: "
+    f"{RUNS} times, or once if it takes more than {CHEAP:g} s; seconds are medians of processor time. Ratios are to "
+    f"`{REFERENCE}` on the same wall, run alternately in the same process. A run that would take more than {LONGEST} s "
+    "is stopped and left out.",
 )
 
 
 def _cases(walls: Mapping[str, StudiedWall]) -> Iterator[Case]:
-    """Every model on every wall that it is asked about, as it is and with each parameter that is varied there."""
+    """Every model on every wall with a question for it, with its defaults and with each parameter varied there."""
     for name, wall in walls.items():
         for model in ASKED[wall.question]:
             if model == "homog" and wall.question == "collapse" and wall.known != "certified":
-                continue  # a continuum of one block, or one that is no running bond, says nothing
+                continue  # homogenisation does not apply to one block or to a wall that is no running bond
             if name != "cell-shear" or model != "fem":  # deformable blocks have no closed form
                 yield name, model, "", ""
             for parameter in PARAMETERS:
@@ -57,7 +57,7 @@ def _cases(walls: Mapping[str, StudiedWall]) -> Iterator[Case]:
 
 
 def depends(case: Case) -> str:
-    """Scene, settings and machine."""
+    """Digest of the scene, the settings and the machine."""
     return fingerprint(all_walls()[case[0]].scene, f"{settings_of(*case[1:])!r} {machine()}", 0.0)
 
 
@@ -84,7 +84,7 @@ STUDY = Study(
 
 
 def page(rows: Rows, folder: Path) -> list[Block]:
-    """The study's page; its charts are drawn into a folder."""
+    """The study's page, with its charts drawn into a folder."""
     every = [row for own in rows.values() for row in own]
     machines = "; ".join(sorted({row["machine"] for row in every if row.get("machine")}))
     failed = failures(rows)

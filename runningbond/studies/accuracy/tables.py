@@ -1,4 +1,4 @@
-"""What the rows say, as tables: models as they are, their parameters, growth, stiffness, and what is cheapest."""
+"""Results as tables: models with their defaults, their parameters, growth, stiffness, and the cheapest settings."""
 
 import statistics
 from collections.abc import Sequence
@@ -18,13 +18,13 @@ from .measure import REFERENCE
 from .parameters import IN_MOTION, VARIED
 from .walls import all_walls
 
-KINDS = {  # models of which the cheapest is looked for
+KINDS = {  # groups of models in which the cheapest is determined
     "any": tuple(MODELS),
     "without a path": (REFERENCE, "limit-nonassociated"),
     "follows a path": ("dem-static", *IN_MOTION),
     "in motion": IN_MOTION,
 }
-QUESTIONS = {  # what each model is taken for
+QUESTIONS = {  # what each model is used for
     "homog": "the trend in texture and slenderness",
     "limit": "a bound at once",
     "limit-nonassociated": "true friction, without a path",
@@ -32,53 +32,53 @@ QUESTIONS = {  # what each model is taken for
     "dem-dynamic": "loads brought up in time",
     "fem": "blocks that deform or crack",
 }
-CHANGED, DEARER = 1.5, 1.25  # ratios of errors and of costs from which on a parameter is said to change them
-EXACT = 1e-4  # error that counts as none: below the digits of the answers that are published
+CHANGED, DEARER = 1.5, 1.25  # ratios of errors and of costs above which a parameter changes them
+EXACT = 1e-4  # error that counts as zero: below the digits of published answers
 TOLERANCES = (0.10, 0.05, 0.02, 0.01, 0.005)
-Setting: TypeAlias = tuple[str, str, str]  # model, parameter and setting; the last two empty for a model as it is
+Setting: TypeAlias = tuple[str, str, str]  # model, parameter and setting; the last two empty for a model's defaults
 
 
 def setting_of(row: Row) -> Setting:
-    """The setting that a row is about."""
+    """The setting that a row belongs to."""
     return row["model"], row["parameter"], row["setting"]
 
 
 def label(setting: Setting) -> str:
-    """What a table or a chart calls a setting."""
+    """Name of a setting in tables and charts."""
     model, parameter, value = setting
     return f"{model}, {parameter} {value}" if parameter else model
 
 
 def percent(error: float) -> str:
-    """An error in per cent, with two digits that count."""
+    """An error in per cent, with two significant digits."""
     return "0 %" if error == 0 else "< 0.01 %" if error < EXACT else f"{100 * error:.2g} %"
 
 
 def times(ratio: float) -> str:
-    """A ratio with two digits that count."""
+    """A ratio with two significant digits."""
     return "< 0.01" if ratio < 0.01 else f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0f}"
 
 
 @dataclass(frozen=True)
 class SettingRecord:
-    """How one setting did on walls brought to collapse."""
+    """Results of one setting on walls brought to collapse."""
 
-    judged: Sequence[Row]  # with a number that can be judged
-    unanswered: Sequence[str]  # walls without a number,
-    own: Sequence[str]  # and those whose answer it certified itself
-    error: float  # the largest
-    ratio: float  # median cost, in runs of `REFERENCE`
+    judged: Sequence[Row]  # rows with an error and a cost
+    unanswered: Sequence[str]  # walls without a number
+    own: Sequence[str]  # walls whose answer the model certified itself
+    error: float  # largest error
+    ratio: float  # median cost, relative to `REFERENCE`
 
     def all(self, column: str) -> list[Any]:
-        """A column of the rows that are judged."""
+        """A column of the judged rows."""
         return [row[column] for row in self.judged]
 
 
 def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, SettingRecord]:
-    """Record of each setting on walls brought to collapse, all of them or some; without a number it has none."""
+    """Record of each setting on walls brought to collapse, all or some of them; none without a judged row."""
     of_setting: dict[Setting, list[Row]] = {}
     for row in rows["accuracy"]:
-        # What took too long, or broke, tells nothing of its wall.
+        # Rows of cases that took too long or failed have no columns that describe the wall.
         wanted = all_walls()[row["wall"]].question == "collapse" and row.get("status") != "not applicable"
         if wanted and (walls is None or row["wall"] in walls):
             of_setting.setdefault(setting_of(row), []).append(row)
@@ -96,7 +96,7 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Set
 
 
 def cheapest(result: dict[Setting, SettingRecord], tolerance: float, models: Sequence[str]) -> Setting | None:
-    """The cheapest setting of some models with errors within a tolerance on `VARIED`, where its own are none."""
+    """Cheapest setting of some models with errors within a tolerance on `VARIED`, except walls it certified itself."""
     good = [
         (record.ratio, setting)
         for setting, record in result.items()
@@ -106,7 +106,7 @@ def cheapest(result: dict[Setting, SettingRecord], tolerance: float, models: Seq
 
 
 def models_table(rows: Rows) -> Sheet:
-    """Every model as it is, on the walls whose answer is known."""
+    """Table of all models with their defaults, on walls with a known answer."""
     body, result = [], records(rows)
     for model, record in [(model, result[model, "", ""]) for model in MODELS if (model, "", "") in result]:
         errors, ratios = record.all("error"), record.all("ratio")
@@ -122,7 +122,7 @@ def models_table(rows: Rows) -> Sheet:
 
 
 def parameters_table(rows: Rows) -> Sheet:
-    """Every parameter that was varied on walls brought to collapse, beside its model as it is on the same walls."""
+    """Table of all parameters varied on walls brought to collapse, beside the model's defaults on the same walls."""
     body, everywhere = [], records(rows)
     for setting, record in everywhere.items():
         plain = (setting[0], "", "")
@@ -142,7 +142,7 @@ def parameters_table(rows: Rows) -> Sheet:
 
 
 def cheapest_table(rows: Rows) -> Sheet:
-    """What is cheapest within a tolerance on all walls on which parameters are varied."""
+    """Table of the cheapest settings within a tolerance on all walls on which parameters are varied."""
     body, result = [], records(rows, VARIED)
     for tolerance in TOLERANCES if result else ():
         for kind, models in KINDS.items():
@@ -155,7 +155,7 @@ def cheapest_table(rows: Rows) -> Sheet:
 
 
 def others_table(rows: Rows) -> Sheet:
-    """Elastic cells and the block that has turned far."""
+    """Table of elastic cells and of the block with a large rotation."""
     body = []
     for row in rows["accuracy"]:
         if row.get("question") not in ("collapse", None) and row.get("error") is not None:
@@ -166,13 +166,13 @@ def others_table(rows: Rows) -> Sheet:
 
 
 def growth(rows: Rows) -> dict[str, list[Row]]:
-    """Rows of the growth study that were timed, by model, in order of size."""
+    """Timed rows of the growth study by model, in order of size."""
     timed = sorted((row for row in rows["growth"] if row.get("cpu_s") is not None), key=lambda row: int(row["blocks"]))
     return {model: own for model in MODELS if (own := [row for row in timed if row["model"] == model])}
 
 
 def exponent(rows: Sequence[Row]) -> float | None:
-    """Exponent p of cpu ∝ blocks^p, by least squares of the logarithms; None of a single size."""
+    """Exponent p of cpu ∝ blocks^p, by least squares of the logarithms; None for a single size."""
     if len(rows) < 2:
         return None
     size, cost = ([row[name] for row in rows] for name in ("blocks", "cpu_s"))
@@ -180,7 +180,7 @@ def exponent(rows: Sequence[Row]) -> float | None:
 
 
 def growth_table(rows: Rows) -> Sheet:
-    """Processor seconds against the number of blocks."""
+    """Table of CPU seconds against the number of blocks."""
     body, walls = [], list(dict.fromkeys(row["wall"] for row in rows["growth"]))
     for model, timed in growth(rows).items():
         own = {row["wall"]: row for row in rows["growth"] if row["model"] == model}
@@ -200,7 +200,7 @@ def _seconds(row: Row) -> str:
 
 
 def stiffness(rows: Rows) -> tuple[dict[float, float], dict[float, float], float | None]:
-    """Processor seconds a physical second by Young's modulus [Pa], masses scaled and not, and of rigid blocks."""
+    """CPU seconds per physical second by Young's modulus [Pa], with scaled and unscaled masses, and of rigid blocks."""
     scaled, plain, rigid = dict[float, float](), dict[float, float](), None
     for row in rows["stiffness"]:
         if row["model"] == "dem-dynamic":
@@ -211,7 +211,7 @@ def stiffness(rows: Rows) -> tuple[dict[float, float], dict[float, float], float
 
 
 def stiffness_table(rows: Rows) -> Sheet:
-    """What a physical second costs where blocks are ever stiffer."""
+    """Table of the cost of a physical second for increasingly stiff blocks."""
     body, (scaled, plain, rigid) = [], stiffness(rows)
     for young, cost in scaled.items():
         unscaled = [f"{plain[young]:.2g}", times(plain[young] / cost)] if young in plain else ["", ""]
@@ -227,7 +227,7 @@ def tables(rows: Rows) -> list[Sheet]:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Rigid blocks are too stiff under compression by k_n a / E."""
+    """Edges: rigid blocks are too stiff in compression by k_n a / E."""
     edges = []
     for row in rows["accuracy"]:
         if row["model"] == "homog" and row.get("question") == "compression" and row.get("error") is not None:

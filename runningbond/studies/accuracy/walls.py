@@ -1,4 +1,4 @@
-"""Walls whose answer is known: exactly, as published to some digits, or as an interval of certified loads."""
+"""Walls with a known answer: exact, published to some digits, or an interval of certified loads."""
 
 import math
 from dataclasses import dataclass
@@ -12,32 +12,32 @@ from runningbond.limit import limit_nonassociated
 from runningbond.scene import Scene, scene_from_dict
 from runningbond.studies.walls import TABLES, inset_wall
 
-# λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second
+# λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or CPU seconds per physical second
 Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear", "physical second"]
 Interval: TypeAlias = tuple[float, float]
-# λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits
+# λ with inset contacts (Ferris & Tin-Loi 2001), to four digits
 PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
-DIGITS = 5e-5  # half of the last digit that is published
+DIGITS = 5e-5  # half a unit of the last published digit
 TURNED = 0.1  # rotation of the turned block [rad]
-STIFF = 1e12  # Young's modulus of blocks where nothing else is said, the paper's [Pa]
+STIFF = 1e12  # default Young's modulus of blocks, the paper's [Pa]
 
 
 @dataclass(frozen=True, eq=False)
 class StudiedWall:
-    """A wall, what is asked of it, and what the answer is worth."""
+    """A wall, the question about it, and the known answer."""
 
     scene: Scene
     question: Question = "collapse"
-    known: Literal["exact", "published", "certified", ""] = ""  # what the answer is worth; nothing where none is known
-    answer: Interval | None = None  # in which it lies; None where it is to be certified (`interval`), or not known
+    known: Literal["exact", "published", "certified", ""] = ""  # how the answer is known; empty if unknown
+    answer: Interval | None = None  # interval of the answer; None if it is certified later (`interval`) or unknown
 
     @property
     def blocks(self) -> int:
-        """Number of its blocks."""
+        """Number of blocks."""
         return int(self.scene.wall.sum())
 
     def interval(self) -> Interval | None:
-        """The answer, certified by limit analysis with true friction where it is to be; None where there is none."""
+        """Interval of the answer, certified by non-associated limit analysis if it has to be; None if it is unknown."""
         if self.known != "certified":
             return self.answer
         result = limit_nonassociated(self.scene)
@@ -60,13 +60,13 @@ def _scene(width: float, height: float, friction: float, young: float = STIFF, /
 
 
 def pile(width: float, height: float, count: int, friction: float) -> StudiedWall:
-    """A stack of n blocks b × h, which falls at λ = min(tan φ, b / (n h))."""
+    """A stack of n blocks b × h, which collapses at λ = min(tan φ, b / (n h))."""
     scene = _scene(width, height, friction, courses=[[1]] * count)
     return StudiedWall(scene, known="exact", answer=(min(friction, width / (count * height)),) * 2)
 
 
 def turned_block(width: float, height: float) -> StudiedWall:
-    """A block that has turned by θ about its corner bears λ = tan(α − θ), tan α = b / h."""
+    """A block that has rotated by θ about its corner, with the capacity λ = tan(α − θ), tan α = b / h."""
     scene = _scene(width, height, 0.9, courses=[[1]])
     return StudiedWall(scene, "turned block", "exact", (math.tan(math.atan2(width, height) - TURNED),) * 2)
 
@@ -74,8 +74,8 @@ def turned_block(width: float, height: float) -> StudiedWall:
 def elastic_cell(young: float, question: Question) -> StudiedWall:
     """A periodic cell of running bond.
 
-    Compressed across its bed joints, blocks without lateral strain are springs in series with them,
-    1 / A2222 = 1 / (a k_n) + 1 / E; sheared, rigid blocks have the closed form of `homog`.
+    In compression across the bed joints, blocks without lateral strain and joints act as springs in series,
+    1 / A2222 = 1 / (a k_n) + 1 / E; in shear, rigid blocks have the closed form of `homog`.
     """
     scene = _scene(0.24, 0.06, 0.6, young, length=1.44, height=0.36)
     in_series = 1 / (1 / (0.06 * joint_stiffness(scene.joint).normal) + 1 / young)
@@ -84,13 +84,13 @@ def elastic_cell(young: float, question: Question) -> StudiedWall:
 
 
 def square_panel(courses: int) -> Scene:
-    """A square panel of blocks twice as wide as high, the texture of panel-06; its number of courses is even."""
+    """A square panel of blocks twice as wide as high, the texture of panel-06, with an even number of courses."""
     return _scene(0.12, 0.06, 0.6, length=0.06 * courses, height=0.06 * courses)
 
 
 @cache
 def accuracy_walls() -> dict[str, StudiedWall]:
-    """Walls of which the answer is known, by name."""
+    """Walls with a known answer, by name."""
     inset = {name: (middle - DIGITS, middle + DIGITS) for name, middle in PUBLISHED_INSET.items()}
     return {
         "block-topples": pile(0.23, 0.36, 1, 0.9),
@@ -111,13 +111,13 @@ def accuracy_walls() -> dict[str, StudiedWall]:
 
 @cache
 def growth_walls() -> dict[str, StudiedWall]:
-    """Square panels of one texture, each of four times the blocks of the one before."""
+    """Square panels of one texture, each with four times the blocks of the previous one."""
     return {f"square-{courses}": StudiedWall(square_panel(courses)) for courses in (6, 12, 24, 48)}
 
 
 @cache
 def stiffness_walls() -> dict[str, StudiedWall]:
-    """One wall whose blocks are ever stiffer."""
+    """One wall with increasingly stiff blocks."""
     stiff = {n: square_panel(12).with_block(young=10.0**n) for n in range(9, 14)}
     return {f"stiff-1e{n}": StudiedWall(scene, "physical second") for n, scene in stiff.items()}
 

@@ -1,4 +1,4 @@
-"""Where the methods fail: every one driven over its edge on purpose, the edge measured and set beside theory.
+"""Where the methods fail: each is deliberately driven beyond its limit, and the limit is compared with theory.
 
 Each experiment is a module of its own with a `STUDY`.
 """
@@ -7,7 +7,7 @@ from importlib import import_module
 
 from runningbond.studies import Study
 
-EXPERIMENTS = (  # their names, in the order in which they are told
+EXPERIMENTS = (  # names, in the order of the page
     *("time-step", "block-stiffness", "joint-stiffness", "loading-rate", "damping", "verdict", "stiffness-update"),
     *("quadrature", "displacements", "material-edges", "linear-program"),
 )

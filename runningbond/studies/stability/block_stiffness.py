@@ -1,8 +1,8 @@
-"""Blocks from soft to stiff: what they cost with and without mass scaling, and what scaling must not do.
+"""Blocks from soft to stiff: their cost with and without mass scaling, and what mass scaling must not change.
 
-Without scaling the step falls with the root of the blocks' stiffness. Scaling makes each deformable mode just so heavy
-that it does not limit the step; making all of them heavier by one factor reaches the same step, and puts modes into
-the band in which the wall moves that have no place there.
+Without scaling the time step is inversely proportional to the root of the blocks' stiffness. Scaling gives each
+deformable mode just enough mass not to limit the step. Scaling all deformable modes by one factor reaches the same
+step, but moves spurious modes into the frequency band of the wall's own motion.
 """
 
 from dataclasses import replace
@@ -23,7 +23,7 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
 YOUNG = (1e9, 1e10, 1e11, 1e12, 1e13)
-EXPENSIVE = 1e11  # E [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes
+EXPENSIVE = 1e11  # E [Pa] above which the wall is not brought to collapse without mass scaling: it would take minutes
 NONE, EACH, UNIFORM = SCALINGS = ("none", "each mode by its own", "all modes by one factor")
 KIND, YOUNGS = "masses scaled", "E [Pa]"
 PART, STEP, SHIFT = (
@@ -34,19 +34,19 @@ PART, STEP, SHIFT = (
 
 
 def wall(young: float) -> Scene:
-    """W1 of blocks of a Young's modulus [Pa], its joints inset, so that its λ is one number."""
+    """W1 with blocks of a given Young's modulus [Pa], and inset joints, which make λ unique."""
     return inset_wall("wall-w1").with_block(young=young)
 
 
 def uniformly_scaled(result: ModalWall, system: BlockSystem, target: float) -> BlockSystem:
-    """The system with all deformable modes heavier by the factor that brings its largest ω² to a target [1/s²]."""
+    """The system with all deformable modes scaled by the factor that reduces its largest ω² to a target [1/s²]."""
     squared = system.interface.frequency_squared
     mass = np.where(result.stiffness > 0, max(1.0, squared / target) * result.mass, result.mass)
     return replace(system, mass=mass, interface=replace(system.interface, frequency_squared=min(target, squared)))
 
 
 def measure(young: float, scaling: str) -> Row:
-    """Step, frequencies and λ of the wall with one way of scaling."""
+    """Time step, frequencies and λ of the wall for one way of scaling."""
     result, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
     plain = system = system_of(result, mass_scaling=False)
     if scaling == EACH:
@@ -69,7 +69,7 @@ def measure(young: float, scaling: str) -> Row:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """The step's power of the stiffness without scaling, its value with it, and what scaling does to frequencies."""
+    """Edges: power of the stiffness in the unscaled step, the scaled step, and the effect of scaling on frequencies."""
     none, each, uniform = ([row for row in rows[PART] if row[KIND] == kind] for kind in SCALINGS)
     stiffest = each[-1]
     return [
@@ -105,10 +105,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
 STUDY = Study(
     "block-stiffness",
     "Block stiffness",
-    trusted="λ does not depend on the blocks' stiffness, and scaling each mode by its own leaves the lowest "
-    "frequencies alone",
-    beyond="many times as many steps without scaling; with one factor for all deformable modes blocks would vibrate in "
-    "the band in which they move as wholes, and `fem` does not offer it",
+    trusted="λ does not depend on the stiffness of the blocks, and scaling the mass of each mode by its own stiffness"
+    " preserves the lowest frequencies",
+    beyond="many times as many steps without mass scaling; with one factor for all deformable modes, blocks would "
+    "vibrate in the frequency band of their rigid motions, and `fem` does not offer it",
     parts={PART: Part((YOUNGS, KIND), [*product(YOUNG, SCALINGS)], measure)},
     charts=[Chart("Time step, λ and lowest frequencies of blocks from soft to stiff", _draw, size=(11, 4.8))],
     fits=fits,

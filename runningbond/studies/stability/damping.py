@@ -1,16 +1,18 @@
 """How much damping a run may have: steps until the verdict, and whether it is right, with too little and too much.
 
-With too little a wall goes on ringing. A block of mass m on a joint of stiffness k rings with ω = √(k/m); with local
-damping α alone each half of its cycle takes (π / 2ω) (1/√(1−α) + 1/√(1+α)) and leaves √((1−α)/(1+α)) of it.
+With too little damping a wall keeps ringing. A block of mass m on a joint of stiffness k rings with ω = √(k/m); with
+local damping α only, each half cycle takes (π / 2ω) (1/√(1−α) + 1/√(1+α)) and multiplies the amplitude by
+√((1−α)/(1+α)).
 
-With too much a fall becomes a creep. Local damping only slows it down, for the unbalanced force, by which rest is
-judged, is measured before it: with (1) of `studies.walls`, a wall loaded by d beyond λ_c has moved by u after
+With too much damping a collapse becomes a creep. Local damping only slows it down, because the unbalanced force, which
+decides whether a wall is at rest, is measured before local damping: by (1) of `studies.walls`, a wall loaded by d
+beyond λ_c has moved by u after
 
     t = (2 u (M / F) / ((1 − α) d))^{1/2}.                                                                     (3)
 
-Mass-proportional damping c M u̇ belongs to the unbalanced force, which it uses up: that falls as d e^{−(1−α) c t}
-while the wall moves on at d / (c M / F), and is taken for rest if it has come below the threshold before the wall
-has come far.
+Mass-proportional damping c M u̇ is part of the unbalanced force and balances the load: the unbalanced force decays as
+d e^{−(1−α) c t} while the wall moves on at d / (c M / F). The wall is taken to be at rest if the unbalanced force falls
+below the threshold before the wall has moved far.
 """
 
 import math
@@ -34,9 +36,9 @@ from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, known_wall
 LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)  # local damping α
 VISCOSITIES = (0.0, 0.01, 0.03, VISCOUS, 0.3, 1.0, 3.0)  # damping ratio ξ of the joints at the highest frequency
 MASS_RATES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # rates c of mass-proportional damping [1/s]
-WALLS, BESIDE = (SLIDING, W1), 0.02  # of the maps, and share of λ_c by which loads lie below and above it
-BUDGET, SHORT = 300_000, 20_000  # steps after which a verdict is given up, in the maps and at the edges of α
-CLOSE = 0.002  # relative width of the edges
+WALLS, BESIDE = (SLIDING, W1), 0.02  # walls of the maps; share of λ_c by which loads are below and above it
+BUDGET, SHORT = 300_000, 20_000  # step budgets for a verdict, in the maps and at the edges of α
+CLOSE = 0.002  # relative accuracy of the edges
 MAPS, MASSIVE, EDGES = "Verdicts by damping", "Verdicts with mass-proportional damping", "Edges"
 LOAD, RATE = "λ / collapse", "c [1/s]"
 LEAST_LOCAL = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
@@ -47,10 +49,10 @@ FEIGNED = f"largest mass-proportional damping that does not feign rest at {1 + B
 def judged(
     name: str, load: float, local: float = LOCAL, viscous: float = VISCOUS, mass_rate: float = 0.0, budget: int = BUDGET
 ) -> Row:
-    """Bring a wall to rest, ramp up to a load in λ_c, hold it: is the verdict right, and after which steps.
+    """Settle a wall, ramp it to a load relative to λ_c, and hold that: is the verdict right, and after how many steps.
 
-    Damped locally to the end, by the joints' viscous ratio and by a mass-proportional rate [1/s], within a budget of
-    steps.
+    Local damping is kept to the end. The other parameters are the joints' viscous damping ratio, a mass-proportional
+    damping rate [1/s] and a budget of steps.
     """
     wall = known_wall(name)
     drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
@@ -66,9 +68,9 @@ def judged(
 
 
 def least_local(name: str = SLIDING) -> Row:
-    """Least local damping with which a block comes to rest under its weight in some steps, without viscosity.
+    """Smallest local damping with which a block settles under its weight in `SHORT` steps, without viscosity.
 
-    Steps a tenth as long as stable ones, for the theory is of a continuous motion.
+    The steps are a tenth of the stable one because the theory is for continuous motion.
     """
     wall = known_wall(name)
     system, criteria = wall.system, Criteria(collapse=wall.far, budget=SHORT, interval=20)
@@ -85,12 +87,12 @@ def least_local(name: str = SLIDING) -> Row:
         return SHORT - rings * half / dt
 
     theory = float(brentq(surplus, 1e-4, 0.9))
-    # Three looks may find the force on its way through zero.
+    # The force may pass through zero at three successive checks.
     return {"measured": _bisected(rings, theory / 2, theory * 2), "theory": theory, "allowed": 0.03}
 
 
 def most_local(name: str = SLIDING) -> Row:
-    """Least 1 − α with which the fall of a block is seen within some steps, by (3)."""
+    """Smallest 1 − α with which the collapse of a block is detected within `SHORT` steps, by (3)."""
     wall, load = known_wall(name), 1 + BESIDE
 
     def surplus(left: float) -> float:
@@ -105,10 +107,11 @@ def most_local(name: str = SLIDING) -> Row:
 
 
 def most_mass_rate(name: str) -> Row:
-    """Largest rate of mass-proportional damping with which a wall's fall is not taken for rest."""
+    """Largest rate of mass-proportional damping with which the collapse of a wall is not taken for rest."""
     wall, load = known_wall(name), 1 + BESIDE
     beyond, criteria = BESIDE * wall.multiplier, Criteria(wall.far)
-    # Calm is seen half an interval later, in the mean, and believed at the last of its looks; a fall at the one before.
+    # Rest is first seen half an interval late, on average, and accepted at the last of `CALM` checks; a collapse must
+    # be seen by the check before.
     looks = (CALM - 1.5) * criteria.interval * Run(wall.system).dt
 
     def surplus(rate: float) -> float:
@@ -126,7 +129,7 @@ def most_mass_rate(name: str) -> Row:
 
 
 def _bisected(before: Callable[[float], bool], low: float, high: float) -> float:
-    """Where something that holds at `low` and not at `high` ceases to."""
+    """Value at which a condition that holds at `low`, and not at `high`, ceases to hold."""
     assert before(low)
     assert not before(high)
     while high > low * (1 + CLOSE):
@@ -136,7 +139,7 @@ def _bisected(before: Callable[[float], bool], low: float, high: float) -> float
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Ranges of α and ξ about the suite's in which every verdict is right, and how many are wrong."""
+    """Edges: ranges of α and ξ around the suite's in which every verdict is right, and the number of wrong ones."""
     bad = {(row["α"], row["ξ"]) for row in rows[MAPS] if row["verdict"] != "right"}
     alphas = [a for a in LOCALS if (a, VISCOUS) not in bad]
     xis = [x for x in VISCOSITIES if (LOCAL, x) not in bad]
@@ -195,10 +198,10 @@ def _draw_mass_rates(axes: Axes, rows: Rows) -> None:
 STUDY = Study(
     "damping",
     "Damping: steps until the verdict, and whether it is right",
-    trusted="with α and ξ a good way about the suite's; some viscosity there must be, for without it sliding contacts "
-    "chatter, and local damping drags on the chatter",
-    beyond="`undecided`, the budget ran out, with too little damping or too much; mass-proportional damping above the "
-    "edges makes a fall look like rest, and no model of the suite has any",
+    trusted="α and ξ within wide ranges around the suite's values; some viscosity is needed, because without it "
+    "sliding contacts chatter, and local damping slows down what chatters",
+    beyond="`undecided` because the step budget runs out, with too little or too much damping; mass-proportional "
+    "damping above the edges makes a collapse look like rest, and no model of the suite uses it",
     parts={
         MAPS: Part(("wall", LOAD, "α", "ξ"), [*product(WALLS, (1 - BESIDE, 1 + BESIDE), LOCALS, VISCOSITIES)], judged),
         MASSIVE: Part(

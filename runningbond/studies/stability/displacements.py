@@ -1,11 +1,11 @@
-"""Small against finite displacements: how far a wall may move before its small-displacement curve is no longer true.
+"""Small against finite displacements: how far a wall may move before its small-displacement curve becomes wrong.
 
-A block b × h that rocks about its corner resists λ(θ) = tan(α − θ), tan α = b/h, when its upper corner has moved by
-u = h sin θ; at small displacements it resists b/h for ever. So a share d of λ is lost at
+A block b × h that rocks about its corner has the capacity λ(θ) = tan(α − θ), tan α = b/h, when its upper corner has
+moved by u = h sin θ; at small displacements its capacity remains b/h. A share d of λ is therefore lost at
 
     u = h sin(α − arctan((1 − d) b/h)) ≈ d h / (λ + 1/λ),  λ = b/h,                                          (1)
 
-and walls that turn over about a corner of their base as a whole lose about as much, with their own λ and height.
+and walls that overturn as a whole about a corner of their base lose about as much, with their own λ and height.
 """
 
 import math
@@ -22,18 +22,18 @@ from runningbond.scene import Array, Mortar, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import inset_wall, one_block
 
-LOSSES = (0.01, 0.02, 0.05, 0.1)  # shares of the small-displacement λ whose loss is looked for
+LOSSES = (0.01, 0.02, 0.05, 0.1)  # shares of the small-displacement λ whose loss is determined
 WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
-SOFTER = 0.1  # modulus of mortar in walls, in the published one: λ past the peak does not mind, the time step does
-FARTHEST = 0.25  # displacement to which they are pushed, in block widths
+SOFTER = 0.1  # modulus of the mortar in walls, relative to the published one; affects the time step, not the falling λ
+FARTHEST = 0.25  # displacement to which scenes are pushed, in block widths
 WALLS = ("block", "W1", "W2")
-ALONE = 2e-5  # tolerance of the one block's curve, of which a hundredth is looked for; those of walls are not so smooth
+ALONE = 2e-5  # tolerance of the block's curve, of which 1 % is to be resolved; curves of walls are less smooth
 PART, PEAK, TALL = "λ lost past the peak", "λ, small", "height / block width"
 MOVED, THEORY = ([f"u/b at {100 * d:.0f} % lost{whose}" for d in LOSSES] for whose in ("", ", one block"))
 
 
 def scene_of(name: str) -> tuple[Scene, float]:
-    """A block that rocks, or a published wall with inset joints and a softer mortar, and the width of a block [m]."""
+    """A rocking block, or a published wall with inset joints and a softer mortar, and the width of a block [m]."""
     if name == "block":
         return one_block(WIDTH, HEIGHT, 2.0, 1e10), WIDTH
     scene = inset_wall(f"wall-{name.lower()}")
@@ -45,9 +45,9 @@ def scene_of(name: str) -> tuple[Scene, float]:
 
 
 def curves(scene: Scene, width: float, tolerance: float) -> tuple[float, Array, Array, Array]:
-    """Push a scene at small and at finite displacements, slower until the curve changes by less than a tolerance.
+    """Push a scene at small and at finite displacements, more slowly until the curve changes by less than a tolerance.
 
-    Returns λ at small displacements in the end, and from the finite curve's peak on u / b and λ of both, ``(n,)``.
+    Returns the final λ at small displacements and, from the peak of the finite curve on, u / b and λ of both, ``(n,)``.
     """
     distance = FARTHEST * width
     static = dem_static(scene, collapse=2 * distance / scene.lowest_block).curve
@@ -58,19 +58,19 @@ def curves(scene: Scene, width: float, tolerance: float) -> tuple[float, Array, 
 
 
 def as_one_block(peak: float, tall: float, loss: float) -> float:
-    """Displacement, in block widths, at which one block as high and of the same λ has lost a share of it, (1)."""
+    """Displacement, in block widths, at which one block of the same height and λ has lost a share of λ, by (1)."""
     return tall * math.sin(math.atan(peak) - math.atan((1 - loss) * peak))
 
 
 def displacement_at(moved: Array, lost: Array, loss: float) -> float:
-    """Displacement, in block widths, from which on more than a share of λ is lost."""
+    """Displacement, in block widths, beyond which more than a share of λ is lost."""
     last = int(np.flatnonzero(lost < loss)[-1])
     assert last + 1 < len(lost), "not pushed far enough"
     return float(np.interp(loss, lost[last : last + 2], moved[last : last + 2]))
 
 
 def measure(name: str) -> Row:
-    """Where a scene has lost shares of its small-displacement λ."""
+    """Displacements at which a scene has lost shares of its small-displacement λ."""
     scene, width = scene_of(name)
     peak, moved, small, finite = curves(scene, width, ALONE if name == "block" else TOLERANCE)
     low, high = scene.blocks.extent(scene.wall)
@@ -82,7 +82,7 @@ def measure(name: str) -> Row:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Displacements at which λ is lost: of the block beside (1), of walls as measured, and how far (1) is off there."""
+    """Edges: displacements at which λ is lost, of the block beside (1), of walls as measured, and the error of (1)."""
     edges, apart = [], 0.0
     for row in rows[PART]:
         for loss, head, theory in zip(LOSSES, MOVED, THEORY, strict=True):
@@ -116,9 +116,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
 STUDY = Study(
     "displacements",
     "Small displacements: how far a wall may move before λ is no longer that of its undeformed shape",
-    trusted="until a share d of λ is lost, at about u = d H / (λ + 1/λ), as by one block of the wall's height H and λ",
-    beyond="a model at small displacements says so in its message and goes on at the same λ; "
-    '`displacements = "finite"` gives the curve that falls',
+    trusted="until a share d of λ is lost, at about u = d H / (λ + 1/λ), the value for a single block of the wall's "
+    "height H and λ",
+    beyond="a model at small displacements reports it in its message and continues at the same λ; `displacements = "
+    '"finite"` gives the falling curve',
     parts={PART: Part(("what",), [(what,) for what in WALLS], measure)},
     charts=[
         Chart("λ past its peak at small and at finite displacements, and what is lost between", _draw, size=(9, 4.8))

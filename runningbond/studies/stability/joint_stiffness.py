@@ -1,7 +1,7 @@
-"""Joints from soft to stiff: the range in which λ does not depend on them, and what is said outside it.
+"""Joints from soft to stiff: the range in which λ does not depend on their stiffness, and the messages outside it.
 
-Soft joints let blocks sink into each other, by ρ g H / k_n at the base, until the wall's own weight moves it as far as
-a collapse does. Stiff ones ask for short time steps, until the budget ends before the wall has had the time to fall.
+Soft joints let blocks overlap, by ρ g H / k_n at the base, until the wall's own weight moves it as far as a collapse
+does. Stiff joints require short time steps, until the budget ends before the wall has had the time to collapse.
 """
 
 import numpy as np
@@ -19,27 +19,27 @@ from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
 NORMAL = tuple(10.0**power for power in range(5, 16))  # normal stiffnesses of the joints [Pa/m]
 RATIO = 0.4  # k_t / k_n, that of mortar with ν = 0.2
-FEM = (1e8, 1e12)  # stiffnesses between which fem is run; beyond them it takes minutes
-RUN = ("dem-static", "dem-dynamic", "fem")  # models that read the stiffness
+FEM = (1e8, 1e12)  # stiffnesses between which fem is run; outside it takes minutes
+RUN = ("dem-static", "dem-dynamic", "fem")  # models that depend on the stiffness
 REST, COLLAPSES, K_N = "W1 at rest under its weight", "W1 brought to collapse", "k_n [Pa/m]"
 OVERLAP, THEORY, STEPS = "overlap [block sizes]", "ρ g H / k_n", "steps to rest"
 CONDITION = "condition number"
 
 
 def wall(normal: float) -> Scene:
-    """W1 with inset joints of a normal stiffness [Pa/m]."""
+    """W1 with inset joints of a given normal stiffness [Pa/m]."""
     return inset_wall("wall-w1").with_joint(elasticity=Stiffness(normal, RATIO * normal))
 
 
 def overlap(scene: Scene, normal: float) -> float:
-    """Depth of a wall's lowest course in its base under its own weight, in block sizes: ρ g H / k_n."""
+    """Overlap of a wall's lowest course and its base under its own weight, in block sizes: ρ g H / k_n."""
     low, high = scene.blocks.extent(scene.wall)
     weight = scene.block.density * float(np.hypot(*scene.load.gravity)) * float((high - low)[1])
     return weight / normal / scene.block_size
 
 
 def at_rest(normal: float) -> Row:
-    """Depth of one block in another under the dead load, steps to there, and conditioning of the static equations."""
+    """Largest overlap of blocks under the dead load, steps to rest, and conditioning of the static equations."""
     scene = wall(normal)
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
@@ -49,7 +49,7 @@ def at_rest(normal: float) -> Row:
 
 
 def condition(scene: Scene) -> float:
-    """Condition number of the static equations before anything opens or slides."""
+    """Condition number of the static equations before any joint opens or slides."""
     system = static_system(scene)
     normal, tangential = system.opening.toarray(), system.slip.toarray()
     stiffness = normal.T @ (system.law.normal_stiffness[:, None] * normal)
@@ -58,18 +58,18 @@ def condition(scene: Scene) -> float:
 
 
 def collapse(normal: float, model: str) -> Row:
-    """What a model makes of the wall."""
+    """Outcome of a model for the wall."""
     outcome = MODELS[model].solve(wall(normal), TOLERANCE)
     return {"of the stiffness": stiffness_note(outcome.message), **outcome_row(outcome)}
 
 
 def stiffness_note(message: str) -> str:
-    """What a message says of the joints' stiffness."""
+    """The note on the stiffness of joints in a message."""
     return next((part for part in message.split("; ") if part.startswith("joints are too")), "")
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Overlap, conditioning and λ where they are farthest from theory, and the range in which all models are silent."""
+    """Edges: overlap, conditioning and λ farthest from theory, and the range in which no model adds a note."""
     rest = [row for row in rows[REST] if row[OVERLAP] < U_CRIT]
     deepest = max(rest, key=lambda row: abs(row[OVERLAP] / row[THEORY] - 1))
     worse, exact = rows[REST][-1][CONDITION] / rows[REST][0][CONDITION], known_wall(W1).multiplier
@@ -119,10 +119,10 @@ CASES = [(k, model) for k in NORMAL for model in RUN if model != "fem" or FEM[0]
 STUDY = Study(
     "joint-stiffness",
     "Joint stiffness",
-    trusted="overlaps at rest stay far below the displacement that counts as collapse, and the budget of time steps "
-    "lasts; neither λ nor the conditioning of the static equations depends on the stiffness there",
-    beyond="softer: a message that joints are too soft; stiffer: `undecided`, for the budget "
-    "runs out, with the time for which each load was followed",
+    trusted="overlaps at rest are far below the displacement that counts as collapse, and the budget of time steps "
+    "suffices; there neither λ nor the conditioning of the static equations depends on the stiffness",
+    beyond="softer: a message that joints are too soft; stiffer: `undecided`, because the budget runs out, with the "
+    "time for which each load was followed",
     parts={REST: Part((K_N,), [*zip(NORMAL)], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
     charts=[
         Chart("λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw, size=(11, 4.6))

@@ -1,4 +1,4 @@
-"""Where the linear programs of limit analysis might fail: degenerate walls, scales, and two ways to solve them."""
+"""Where the linear programs of limit analysis might fail: degenerate walls, scales, and two solvers."""
 
 import time
 from collections.abc import Callable
@@ -19,23 +19,23 @@ from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.walls import boxes
 
 POWERS = (-6, -4, -2, 0, 2, 4, 6)  # powers of ten by which quantities are multiplied, one at a time
-WORTH = 1e-9  # difference that counts as rounding: what a linear program's answer is good for
+WORTH = 1e-9  # relative difference that counts as rounding error of a linear program
 STIFFNESS = Stiffness(1e11, 4e10)
 QUANTITIES = ("density", "size", "load")
 WALLS = ("wall-w1", "wall-w2", "wall-w3", "panel-04", "panel-03")
 DEGENERATES, SCALES = "λ of degenerate walls", "λ at every scale, of what it must be"
 SOLVERS = "λ by simplex, of that by interior point"
-PROGRAMS = ("limit", "limit-nonassociated")  # the models that solve linear programs; neither reads a stiffness
+PROGRAMS = ("limit", "limit-nonassociated")  # models that solve linear programs; neither depends on the stiffness
 
 
 def row_of_piers(number: int, friction: float = 0.6) -> Scene:
-    """Equal piers of four blocks, 240 mm wide and 480 mm high, apart: as many mechanisms, and their combinations."""
+    """Separate equal piers of four blocks, 240 mm wide and 480 mm high: one mechanism each, and their combinations."""
     places = [(0.5 * pier, 0.12 * course, 0.24, 0.12) for pier in range(number) for course in range(4)]
     return boxes(*places, joint=JointMaterial(friction, elasticity=STIFFNESS))
 
 
 def dusty() -> Scene:
-    """A pier with grains of a hundred-millionth of its blocks' weight on its top and beside it."""
+    """A pier with grains of about 3.5e-7 of a block's weight on its top and beside it."""
     pier = [(0.0, 0.12 * course, 0.24, 0.12) for course in range(4)]
     grains = [(x, y, 1e-4, 1e-4) for x, y in ((0.02, 0.48), (0.12, 0.48), (0.22, 0.48), (0.4, 0.0))]
     return boxes(*pier, *grains, joint=JointMaterial(0.6, elasticity=STIFFNESS))
@@ -51,7 +51,7 @@ DEGENERATE: dict[str, tuple[Callable[[], Scene], float]] = {  # degenerate walls
 
 
 def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
-    """A glued pier under 1.1 λ N on its top, a quantity multiplied, strength along with weight; its change of λ."""
+    """A glued pier under 1.1 λ N on its top, one quantity scaled, and its factor on λ; strength scales with weight."""
     size, load = (factor if quantity == what else 1.0 for what in ("size", "load"))
     strength = 1.0 if quantity == "load" else factor
     pier = row_of_piers(1)
@@ -64,14 +64,14 @@ def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
 
 
 def degenerate_row(wall: str, model: str) -> Row:
-    """λ of a degenerate wall, beside the exact one: min of tan φ and width / height, whatever else happens."""
+    """λ of a degenerate wall beside the exact one, which is always the smaller of tan φ and width / height."""
     build, exact = DEGENERATE[wall]
     result = MODELS[model].solve(build(), TOLERANCE).lower
     return {"measured": float("nan") if result is None else result, "theory": exact, "allowed": 1e-6}
 
 
 def scale_row(model: str, quantity: str) -> Row:
-    """Largest relative error of λ over twelve orders of magnitude of a quantity; inf where there is no answer."""
+    """Largest relative error of λ over twelve orders of magnitude of a quantity; inf if there is no answer."""
     reference, errors = MODELS[model].solve(glued()[0], TOLERANCE).lower, []
     assert reference is not None
     for power in POWERS:
@@ -82,7 +82,7 @@ def scale_row(model: str, quantity: str) -> Row:
 
 
 def solver_row(wall: str) -> Row:
-    """A published wall by dual simplex, beside interior point: λ, what the certificates miss by, and seconds."""
+    """A published wall by dual simplex and by interior point: λ, error of the certificates, and seconds."""
     system = equilibrium(published_scene(wall))
     row: Row = {"movable blocks": system.freedoms // 3}
     for name, method in (("interior point", "highs-ipm"), ("simplex", "highs-ds")):
@@ -122,10 +122,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
 STUDY = Study(
     "linear-program",
     "The linear programs of limit analysis",
-    trusted="λ follows density, size and load over twelve orders of magnitude to rounding; equal mechanisms, many at "
-    "one load, and grains beside blocks change nothing; interior point and simplex agree",
-    beyond="an optimum whose forces and mechanism do not prove each other is `failed`, never a number, with what they "
-    "miss by",
+    trusted="λ scales with density, size and load over twelve orders of magnitude to rounding; coinciding mechanisms "
+    "and grains beside blocks do not change it; interior point and simplex agree",
+    beyond="an optimum whose forces and mechanism do not prove each other is `failed`, never a number, with the "
+    "amount by which they miss",
     parts={
         DEGENERATES: Part(("wall", "model"), [*product(DEGENERATE, PROGRAMS)], degenerate_row),
         SCALES: Part(("model", "quantity"), [*product(PROGRAMS, QUANTITIES)], scale_row),

@@ -1,12 +1,12 @@
-"""How fast a wall may be loaded: what a ramp and a prescribed displacement say of λ, and the suite's load steps.
+"""How fast a wall may be loaded: λ by a ramp, by a prescribed displacement, and by the suite's load steps.
 
-Under a ramp λ = r t a wall begins to move at λ_c and is seen to fall once it has moved by u. With (1) of
-`studies.walls`, (M / F) ü = (1 − α) (λ − λ_c), that is at
+Under a ramp λ = r t a wall begins to move at λ_c, and its collapse is detected once it has moved by u. By (1) of
+`studies.walls`, (M / F) ü = (1 − α) (λ − λ_c), this is at
 
     λ − λ_c = (6 u r² (M / F) / (1 − α))^{1/3},                                                                 (2)
 
-too high by the rate to the power 2/3. Under displacement control inertia resists only until the wall has come up to
-its speed; what is left, a soft start later, are the waves of that start.
+an excess that grows with the rate to the power 2/3. Under displacement control inertia resists only until the wall has
+reached its speed; after a soft start only the waves of that start remain.
 """
 
 from collections.abc import Mapping
@@ -30,17 +30,17 @@ from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_scene, known_
 
 WALLS = (SLIDING, TOPPLING, W1)
 RATES = tuple(10.0 ** -(k / 3) for k in range(7))  # rates of λ [1/s], the fastest first
-PUSHES = tuple(1_000 * 2**k for k in range(12))  # steps in which a wall is pushed as far as a load step may move it
-LOADINGS = (0, 1, 4, LOADING, 2 * LOADING, 8 * LOADING)  # times of the first load step, in times to rest
+PUSHES = tuple(1_000 * 2**k for k in range(12))  # time steps in which a wall is pushed by the limit of a load step
+LOADINGS = (0, 1, 4, LOADING, 2 * LOADING, 8 * LOADING)  # durations of the first load step, in times to rest
 DRY = ("panel-12", "point-load-4")  # published walls whose λ depends on their history; the second has no weight
-ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between two looks, width of brackets
-FLOOR = 1e-4  # least difference that charts show [%]
+ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between two checks, width of brackets
+FLOOR = 1e-4  # smallest difference in charts [%]
 RAMPS, DRIVEN, STEPPED, OWN = "Ramps", "Displacement control", "Load steps", "The suite's own speeds"
 RATE, SPEED, OFF, LOADED = "rate [1/s]", "speed [mm/s]", "off by [%]", "first step in [times to rest]"
 
 
 def off(name: str, multiplier: float) -> float:
-    """How far λ of a wall is off what is known [%]."""
+    """Deviation of λ of a wall from the known value [%]."""
     return 100 * (multiplier / known_wall(name).multiplier - 1)
 
 
@@ -51,7 +51,7 @@ def excess(name: str, rate: float, local: float = LOCAL) -> float:
 
 
 def ramp_row(name: str, rate: float, local: float = LOCAL) -> Row:
-    """λ at which a wall under a ramp is seen to fall."""
+    """λ at which the collapse of a wall under a ramp is detected."""
     wall = known_wall(name)
     run, rest = wall.rest(local)
     state, multiplier, step = rest.copy(), 0.0, rate * LOOK * run.dt
@@ -63,19 +63,19 @@ def ramp_row(name: str, rate: float, local: float = LOCAL) -> Row:
 
 
 def order(name: str, rate: Array, multiplier: Array) -> float:
-    """Power of the rate with which the excess over the known λ grows."""
+    """Power of the rate in the excess of λ over the known value."""
     return float(np.polyfit(np.log(rate), np.log(multiplier - known_wall(name).multiplier), 1)[0])
 
 
 def at_no_speed(rate: Array, multiplier: Array) -> tuple[float, float]:
-    """λ of a ramp without speed and its standard error, by a line over rate^(2/3), as which the scatter grows."""
+    """λ of a ramp extrapolated to zero rate and its standard error, by a line over rate^(2/3), weighted as scatter."""
     away = rate**ORDER
     line, covariance = np.polyfit(away, multiplier, 1, w=1 / away, cov=True)
     return float(line[1]), float(np.sqrt(covariance[1, 1]))
 
 
 def push_row(name: str, steps: int) -> Row:
-    """Peak of λ of a wall that is pushed as far as its load steps may move it, in some time steps."""
+    """Peak of λ of a wall that is pushed by the displacement limit of its load steps, in a number of time steps."""
     wall = known_wall(name)
     run, rest = wall.rest()
     peak = drive(run, rest, wall.far, steps).peak
@@ -84,7 +84,7 @@ def push_row(name: str, steps: int) -> Row:
 
 @cache
 def search_of(name: str) -> tuple[Run, float, Criteria]:
-    """What a search for λ of a wall takes: its blocks, its first load step, and when it has fallen."""
+    """Input of a search for λ of a wall: its run, its first load step, and its collapse criteria."""
     scene = published_scene(name) if name in DRY else known_scene(name)
     run = quasi_static_run(scene)
     far: float | Array = U_CRIT * scene.block_sizes if name in DRY else U_CRIT * scene.block_size
@@ -92,7 +92,7 @@ def search_of(name: str) -> tuple[Run, float, Criteria]:
 
 
 def step_row(name: str, loading: float) -> Row:
-    """Bracket of λ by load steps, the load growing by its first one in so many times to rest."""
+    """Bracket of λ by load steps; the load grows by its first step in `loading` times the time to rest."""
     run, first, criteria = search_of(name)
     result = load_steps(run, first, BRACKET, criteria, loading=loading)
     assert result.lower is not None
@@ -101,7 +101,7 @@ def step_row(name: str, loading: float) -> Row:
 
 
 def own_row(name: str) -> Row:
-    """The suite's ramps between its first load steps, and its displacement control, halved until it settles to 1 %."""
+    """The suite's own speeds: ramps between its first load steps, and displacement control that has settled to 1 %."""
     (run, rest), (_, first, criteria) = known_wall(name).rest(), search_of(name)
     state = rest.copy()
     settle(run, state, first, criteria)
@@ -115,12 +115,12 @@ def own_row(name: str) -> Row:
 
 
 def default_loading(name: str) -> float:
-    """The suite's loading of a wall."""
+    """The suite's duration of the first load step of a wall, in times to rest."""
     return LOADING_WEIGHTLESS if search_of(name)[0].system.weightless else LOADING
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Orders and limits of ramps, peaks under displacement control, and load steps in haste."""
+    """Edges: orders and limits of ramps, peaks under displacement control, and load steps that are too fast."""
     edges = []
     for name in WALLS:
         known, loose = known_wall(name).multiplier, not known_wall(name).is_block
@@ -152,7 +152,7 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _above_floor(row: Mapping[str, Any]) -> float | None:
-    """How far λ is off [%]; None where that is no more than can be told from nothing."""
+    """Deviation of λ [%]; None if it is not above `FLOOR`."""
     return abs(row[OFF]) if abs(row[OFF]) > FLOOR else None
 
 
@@ -199,11 +199,12 @@ def _draw(figure: Figure, rows: Rows) -> None:
 STUDY = Study(
     "loading-rate",
     "Loading rate: ramp, displacement control and load steps",
-    trusted="load steps at any speed where λ is unique, for each load is held until the wall rests or falls, and where "
-    "it depends on the history from the suite's speed on; a ramp only extrapolated to no speed, a peak under "
-    "displacement control only below the speeds of the edges",
-    beyond="a λ that is too high in a ramp or under displacement control, from which no model of the suite takes its "
-    "λ; by load steps in haste the λ of an equilibrium that the wall bears, but would not have come to by itself",
+    trusted="load steps at any speed if λ is unique, because each load is held until the wall rests or falls, and at "
+    "the suite's speed or slower if λ depends on the history; a ramp only if extrapolated to zero speed, and "
+    "a peak under displacement control only below the speeds of the edges",
+    beyond="a λ that is too high in a ramp or under displacement control, which no model of the suite uses for λ; "
+    "with fast load steps, the λ of an equilibrium that the wall can carry but would not have reached by "
+    "itself",
     parts={
         RAMPS: Part(("wall", RATE), [*product(WALLS, RATES)], ramp_row),
         DRIVEN: Part(("wall", "time steps"), [*product(WALLS, PUSHES)], push_row),

@@ -1,7 +1,7 @@
-"""What every model says of materials, shapes and sizes at the edge of what there is.
+"""Answers of every model for materials, shapes and sizes at the limits of what is possible.
 
-Each extreme has an exact answer: a multiplier, a pair of loads between which it lies, or a status. A model may give
-it, say that it cannot, or refuse; a number beside it is a wrong answer.
+Each extreme has an exact answer: a multiplier, two loads between which it lies, or a status. A model may return that
+answer, report that it cannot, or refuse the scene; any other number is wrong.
 """
 
 from collections import Counter
@@ -22,11 +22,11 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import TABLES, Box, boxes
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-UNSEEN = 1e-4  # multiplier below which models in motion see no difference from zero
-SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of one and the same wall
+UNSEEN = 1e-4  # multiplier below which dynamic models cannot distinguish from zero
+SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of the same wall
 PART = "Answers"
-Exact: TypeAlias = float | tuple[float, float] | str  # λ, two loads between which it lies, a status, or ``refused``
-WORTH = {  # what an answer may be worth: its colour, and words for it
+Exact: TypeAlias = float | tuple[float, float] | str  # λ, two loads between which λ lies, a status, or ``refused``
+WORTH = {  # ratings of an answer: colour and label
     "right": ("#8fbcd8", "right"),
     "estimate": ("#dcdcdc", "estimate, on either side"),
     "refused": ("#f7f7f7", "refused: no closed form"),
@@ -36,12 +36,12 @@ WORTH = {  # what an answer may be worth: its colour, and words for it
 
 
 def dry(**changes: Any) -> dict[str, Any]:
-    """The table of a joint with tan φ = 0.6 and 10 mm of mortar, some of its keys changed."""
+    """The table of a joint with tan φ = 0.6 and 10 mm of mortar, with some of its keys changed."""
     return TABLES["joint"] | changes
 
 
 def panel(size: float = 1.0, **tables: Any) -> Scene:
-    """A panel of four courses of blocks 240 × 60 mm, 480 mm long or of another size, with other tables of its scene."""
+    """A panel of four courses of blocks 240 × 60 mm, 480 mm long times `size`, with other tables of its scene."""
     lengths = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.48, "height": 0.24}
     wall = {name: length * size for name, length in lengths.items()}
     return scene_from_dict(TABLES | {"wall": wall} | tables)
@@ -54,7 +54,7 @@ def courses(pattern: list[list[float]], width: float, height: float, **joint: fl
 
 
 def pier(width: float, height: float, blocks: int = 1, **joint: float) -> Scene:
-    """A pier of equal blocks, which topples at width / height of the whole."""
+    """A pier of equal blocks, which topples at λ = width / height of the whole."""
     return courses([[1]] * blocks, width, height / blocks, **joint)
 
 
@@ -64,18 +64,18 @@ def piled(*piles: Box) -> Scene:
 
 
 def gaping(gap: float) -> Scene:
-    """A block of 240 × 240 mm that hovers over another by some contact tolerances."""
+    """A block of 240 × 240 mm above another, with a gap of some contact tolerances."""
     return piled((0, 0, 0.24, 0.24), (0, 0.24 * (1 + gap * CONTACT_TOLERANCE), 0.24, 0.24))
 
 
 def pressed(x: float, force: list[float], **tables: Any) -> Scene:
-    """The panel, or another, under a force at its top or corner."""
+    """The panel, or another wall, under a point force on its top."""
     at = [x, 0.06 if "wall" in tables else 0.24]
     return panel(load={"gravity": 9.81, "live": {"kind": "point", "at": at, "force": force}}, **tables)
 
 
 def similar(size: float) -> Scene:
-    """The panel in another size, stiffness along: displacements, too, are in proportion to its size."""
+    """The panel in another size, Young's modulus of its blocks in proportion, so that displacements are, too."""
     joint = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     return panel(size, joint=joint, block={"density": 1800.0, "young": 2e10 * size, "poisson": 0.2})
 
@@ -84,9 +84,9 @@ BRICK = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length":
 PINNED = {"wall": BRICK, "support": {"kind": "pinned-corners"}}
 BRITTLE = {"fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
 GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
-# λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms
+# λ at which a 1 m block on a 10 mm block overturns with it about the ground: weights times lever arms
 ON_SMALL = (0.01 * 0.005 * 0.01 + 1 * 0.005) / (0.01 * 0.01 * 0.005 + 1 * 0.51)
-EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may be refused, and what is true of them
+EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may be refused, and their exact answers
     "tan φ = 0": (lambda: panel(joint=dry(friction=0.0)), 0.0),
     "tan φ = 10⁻⁹": (lambda: panel(joint=dry(friction=1e-9)), "refused"),
     "tan φ = 10⁻⁶": (lambda: panel(joint=dry(friction=1e-6)), 1e-6),
@@ -116,13 +116,13 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may b
 
 
 def answer(what: str, model: str) -> Row:
-    """What a model answers about an extreme, what that is worth, and the message or the refusal."""
+    """Answer of a model for an extreme, its rating, and the message or the refusal."""
     build, exact = EXTREMES[what]
     row: Row = {"exact": in_words(exact)}
     try:
         outcome = MODELS[model].solve(build(), TOLERANCE)
     except SceneError as error:
-        # `homog` refuses what it has no closed form for, and the reader what is no wall.
+        # `homog` refuses scenes without a closed form, and the reader refuses what is not a wall.
         value = "right" if exact == "refused" else "refused" if model == "homog" else "wrong"
         return row | {"answer": "refused", "worth": value, "message": str(error)}
     said: Exact = outcome.status if outcome.multiplier is None else outcome.multiplier
@@ -134,7 +134,7 @@ def answer(what: str, model: str) -> Row:
 
 
 def in_words(exact: Exact) -> str:
-    """An answer as a chart says it: an interval from nothing by its upper end, one of equal ends as a number."""
+    """An answer as text in a chart: an interval from zero as its upper bound, one with equal ends as a number."""
     if isinstance(exact, str):
         return exact
     ends = list(dict.fromkeys(_plain(x) for x in (exact if isinstance(exact, tuple) else (exact,))))
@@ -142,7 +142,7 @@ def in_words(exact: Exact) -> str:
 
 
 def _plain(value: float) -> str:
-    """A multiplier without an exponent in letters."""
+    """A multiplier as text, with powers of ten instead of e-notation."""
     if value == 0 or value >= 1e-4:
         return number(value) if value else "0"
     mantissa, power = f"{value:.2g}".split("e")
@@ -150,7 +150,7 @@ def _plain(value: float) -> str:
 
 
 def worth(outcome: Outcome, exact: Exact) -> str:
-    """What an outcome is worth beside the exact answer."""
+    """Rating of an outcome against the exact answer."""
     if outcome.status in ("undecided", "failed"):
         return "says so"
     if isinstance(exact, str):
@@ -167,7 +167,7 @@ def worth(outcome: Outcome, exact: Exact) -> str:
 
 
 def widest_gap(what: str) -> Row:
-    """Gap, in block sizes, at which two blocks begin to be none of one wall."""
+    """Largest gap, in block sizes, at which two blocks are still in contact."""
     low, high = 0.5, 2.0
     while high - low > 1e-6:
         middle = (low + high) / 2
@@ -180,7 +180,7 @@ def widest_gap(what: str) -> Row:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """One λ at every size, and what the answers are worth."""
+    """Edges: λ is equal at every size, and the number of answers by rating."""
     edges = []
     for model in MODELS:
         loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
@@ -217,8 +217,8 @@ SIZE = 10.5, 0.31 * len(EXTREMES) + 1.6  # of the chart [in]
 STUDY = Study(
     "material-edges",
     "Materials, shapes and sizes at the edge",
-    trusted="no answer is wrong; models in motion see no multiplier below 0.0001, and brackets there are as wide",
-    beyond="`undecided` and why, or a refusal that names what is wrong",
+    trusted="no answer is wrong; dynamic models resolve no multiplier below 0.0001, and brackets there are as wide",
+    beyond="`undecided` with the reason, or a refusal that names what is wrong",
     parts={
         PART: Part(("wall", "model"), [*product(EXTREMES, MODELS)], answer),
         "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),

@@ -1,14 +1,15 @@
-"""Quadrature and mesh of the joints: what points inside them cost, and what a finer mesh gives back.
+"""Quadrature and mesh of the joints: the error due to interior points, and how much of it a finer mesh removes.
 
 A block of width b on n elements rocks about the outermost point of its joint, which for a rule on [−1, 1] with first
-node x lies (1 + x) b / (2 n) in from its edge; so it topples at
+node x lies (1 + x) b / (2 n) inside its edge. It therefore topples at
 
     λ = (b / h) (1 − (1 + x) / n):                                                                           (1)
 
-42, 21 and 11 % early on 1, 2 and 4 elements with two Gauss points, never with points at the ends. A wall's joints do
-the same one by one: points that far in are contacts with as large an inset, so that W1 falls where `dem_static`, which
-has its points at the ends of the joints, has it with that inset. Blocks are rigid here, and the mesh is that of their
-joints; `benchmarks/studies/fem_study.py` lets them deform, which at 1000 GPa leaves the brackets as they are.
+42, 21 and 11 % too early on 1, 2 and 4 elements with two Gauss points, and never too early with points at the ends. The
+same holds for each joint of a wall: interior points are contacts with an inset of the same size, and W1 collapses where
+`dem_static`, which has its points at the ends of the joints, collapses with that inset. Blocks are rigid here, and the
+mesh is that of their joints; in `benchmarks/studies/fem_study.py` they deform, which at 1000 GPa does not change the
+brackets.
 """
 
 from functools import cache
@@ -28,9 +29,9 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import inset_wall, one_block
 
 RULES = {"Gauss 2": gauss(2), "Gauss 3": gauss(3), "Lobatto 2": lobatto(), "Simpson": lobatto(3)}
-CELLS = (1, 2, 4)  # cells in half a block along the course, and in its height: elements of the joint of half a block
+CELLS = (1, 2, 4)  # cells per half block along the course, and over its height: elements of the joint of half a block
 WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
-TIGHT, USUAL = 5e-4, 5e-3  # relative width of the brackets, of the block and of walls
+TIGHT, USUAL = 5e-4, 5e-3  # relative width of the brackets, for the block and for walls
 SCENES = {"block": "block on n elements", "W1": "W1, inset 20 mm", "panel-04": "panel-04"}
 PART, ENDS, EARLY = "λ", "with points at the ends", "of that with points at the ends"
 
@@ -44,12 +45,12 @@ def scene_of(name: str) -> Scene:
 
 @cache
 def with_points_at_the_ends(name: str) -> float:
-    """λ of a scene with points at the ends of its joints: exact for the block, `dem_dynamic`'s for walls."""
+    """λ of a scene with points at the ends of its joints: exact for the block, from `dem_dynamic` for walls."""
     return WIDTH / HEIGHT if name == "block" else _middle(dem_dynamic(scene_of(name), USUAL))
 
 
 def measure(name: str, rule: str, cells: int) -> Row:
-    """λ of a scene with one rule on one mesh, beside theory: (1) for the block, another inset for W1."""
+    """λ of a scene for one rule and mesh, beside theory: (1) for the block, an equivalent inset for W1."""
     scene, reference = scene_of(name), with_points_at_the_ends(name)
     outcome = fem(scene, TIGHT if name == "block" else USUAL, cells=cells, modes=3, rule=RULES[rule])
     result = _middle(outcome)
@@ -65,7 +66,7 @@ def measure(name: str, rule: str, cells: int) -> Row:
 
 
 def inset_of(scene: Scene, rule: Rule, cells: int) -> float:
-    """Distance of the outermost point from the end of a bed joint of half a block [m]; rules begin at the inset."""
+    """Distance of the outermost point from the end of a half-block bed joint [m]; rules start at the inset."""
     assert scene.bond is not None
     element = scene.bond.width / 2 / cells - (2 if cells == 1 else 1) * scene.joint.inset
     return float(scene.joint.inset + (1 + rule.nodes[0]) / 2 * element)
@@ -78,7 +79,7 @@ def _middle(outcome: Outcome) -> float:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """How far λ is off where it is farthest, with points at the ends and with points inside."""
+    """Edges: largest deviation of λ, with points at the ends and with interior points."""
     off: dict[str, float] = {}
     for row in rows[PART]:
         mesh = "one cell" if row["cells"] == 1 else "two cells in half a block or more"
@@ -112,10 +113,11 @@ CASES = [*product(["block"], RULES, CELLS), *product(["W1"], USED, CELLS), *prod
 STUDY = Study(
     "quadrature",
     "Quadrature and mesh of the joints",
-    trusted="Lobatto and Simpson, with points at the ends of the joints, on two cells in half a block or more; with "
-    "Gauss points blocks and walls fall early, a block by an error that goes as 1 / n with n elements a joint",
-    beyond="nothing: every rule ends in `collapse`, its bracket as narrow; Lobatto is the default of every model, and "
-    "no scene or command can ask for another",
+    trusted="Lobatto and Simpson, with points at the ends of the joints, on two or more cells per half block; with "
+    "Gauss points blocks and walls fall early, a block with an error proportional to 1 / n for n elements per"
+    " joint",
+    beyond="no warning: every rule ends in `collapse` with a bracket as narrow; Lobatto is the default of every "
+    "model, and no scene or command can select another",
     parts={PART: Part(("scene", "rule", "cells"), CASES, measure)},
     charts=[Chart("λ by rule and mesh, over λ with points at the ends of the joints", _draw, size=(8, 4.8))],
     fits=fits,

@@ -1,9 +1,9 @@
-"""The paper's static solver as published: where its updates of the stiffness cycle, wander or go singular.
+"""The paper's static solver as published: where its updates of the stiffness cycle, wander or become singular.
 
-Every dry published wall is loaded up to the collapse load of `dem_static`, the robust variant, in increments of one
-size after another, and each tenth of that load told: whether the algorithm got there, or how it ended instead.
-A single block has a joint that fails at collapse and not before: the algorithm must bear it to there, and with the
-paper's reading of l_c, the whole length of the joint, to twice that.
+Every dry published wall is loaded up to the collapse load of `dem_static`, the robust variant, with each of several
+increment sizes. The rows report for each tenth of that load whether the algorithm reached it, or how it ended instead.
+A single block has a joint that fails at collapse and not before: the algorithm must carry the block's load up to
+collapse, and with the paper's reading of l_c, the whole length of the joint, up to twice that load.
 """
 
 from collections import Counter
@@ -23,13 +23,13 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import one_block
 
 WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS))  # dry: twelve panels, W1 to W3
-TENTHS, FINE = 10, 2000  # shares of the collapse load that are told, and increments to that of a single block
-INCREMENTS = (1, 10, 100)  # load steps to the collapse load; 1 stands for each tenth of it put on at once
-ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as the paper reads
-OUTSIDE = 1e-3  # excess of forces over Eq. 3, in the largest of them, that counts as one
-TOLERANCE = 0.02  # width of the bracket of collapse loads
+TENTHS, FINE = 10, 2000  # shares of the collapse load in the rows, and increments to that of a single block
+INCREMENTS = (1, 10, 100)  # load steps to the collapse load; 1 means that each tenth is applied at once
+ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as read in the paper
+OUTSIDE = 1e-3  # excess of forces over Eq. 3, relative to the largest force, above which Eq. 3 is violated
+TOLERANCE = 0.02  # relative width of the bracket of collapse loads
 
-LOOKS = {  # colour, letter and words of what may become of a tenth of the collapse load
+LOOKS = {  # colour, letter and label of the possible results for a tenth of the collapse load
     "converged": ("#bfe3df", "", "converged"),
     "outside": ("#6db8af", "×", "converged, forces break Eq. 3"),
     "cycle": (LINES[2][0], "c", "cycle"),
@@ -37,7 +37,7 @@ LOOKS = {  # colour, letter and words of what may become of a tenth of the colla
     "wandering": (LINES[0][0], "w", "wandering"),
     "unreached": ("white", "", "given up before"),
 }
-BLOCKS = {  # width and height [m], exact λ, l_c as a share of the joint, and load borne by theory, in collapse loads
+BLOCKS = {  # width and height [m], exact λ, l_c as a share of the joint, and theoretical capacity in collapse loads
     "topples, l_c half the joint": ((0.5, 2.0), 0.25, 0.5, 1.0),
     "slides, l_c half the joint": ((2.0, 0.5), 0.6, 0.5, 1.0),
     "topples, l_c the whole joint": ((0.5, 2.0), 0.25, 1.0, 2.0),
@@ -47,7 +47,7 @@ ENDED, BORNE, EXCESS = "ended", "borne [collapse load]", "largest excess over Eq
 
 
 def block_row(what: str) -> Row:
-    """What a single block bears, in its collapse load."""
+    """Capacity of a single block, relative to its collapse load."""
     size, exact, arm, theory = BLOCKS[what]
     result = stiffness_update(one_block(*size, 0.6, 1e11), exact / FINE, 2.5 * exact, arm)
     assert result.multiplier is not None
@@ -63,12 +63,12 @@ def collapse_load(wall: str) -> float:
 
 
 def measure(wall: str, arm: float, increments: int) -> Row:
-    """What became of each tenth of a wall's collapse load."""
+    """Results for each tenth of a wall's collapse load."""
     return {"λ, dem-static": collapse_load(wall), **loaded(published_scene(wall), collapse_load(wall), arm, increments)}
 
 
 def loaded(scene: Scene, collapse: float, arm: float, increments: int) -> Row:
-    """Load a scene up to a load: how it ended, what it bore (−1 if not even its weight), and each tenth's fate."""
+    """Load a scene up to a load: how it ended, its capacity (−1 if below its weight), and the result of each tenth."""
     if increments == 1:
         loads = collapse * np.arange(1, TENTHS + 1) / TENTHS
         runs = [stiffness_update(scene, load, load, arm) for load in loads]
@@ -76,7 +76,7 @@ def loaded(scene: Scene, collapse: float, arm: float, increments: int) -> Row:
     else:
         runs = [stiffness_update(scene, collapse / increments, collapse, arm)]
         each = increments // TENTHS
-        # The dead load alone belongs to the first tenth.
+        # The step with only the dead load belongs to the first tenth.
         fates = [_fate(runs[0], k * each + (k > 0), (k + 1) * each + 1) for k in range(TENTHS)]
     lost = next((k for k, fate in enumerate(fates) if fate not in ("converged", "outside")), TENTHS)
     borne = lost / TENTHS if increments == 1 else (len(runs[0].curve) - 1) / increments
@@ -90,7 +90,7 @@ def loaded(scene: Scene, collapse: float, arm: float, increments: int) -> Row:
 
 
 def _fate(run: StiffnessUpdate, first: int, end: int) -> str:
-    """What became of load steps from `first` on, before `end`; ``outside`` if they converged and break Eq. 3."""
+    """Result of load steps from `first` on, before `end`; ``outside`` if they converged but violate Eq. 3."""
     ends = run.status[first:end]
     if not ends or ends[-1] != "converged":
         return ends[-1] if ends else "unreached"
@@ -98,7 +98,7 @@ def _fate(run: StiffnessUpdate, first: int, end: int) -> str:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """How runs in steps ended, and what is borne at the least."""
+    """Edges: how runs in steps ended, and the smallest capacity."""
     stepped = [row for row in rows[PART] if row["steps"] > 1]
     nowhere = {row["wall"] for row in stepped if row[BORNE] <= 0}
     least = min(row[BORNE] for row in stepped if row["wall"] not in nowhere)
@@ -139,9 +139,9 @@ def _draw(figure: Figure, rows: Rows) -> None:
 STUDY = Study(
     "stiffness-update",
     "The stiffness update as published, on walls up to their collapse load",
-    trusted="on a single block, up to its collapse; on no wall",
-    beyond="each load step has its status, and a run ends with the first that is `cycle`, `singular` or `wandering`; "
-    "its curve stops at the last load that converged",
+    trusted="on a single block up to its collapse; on no wall",
+    beyond="each load step has a status, and a run ends at the first `cycle`, `singular` or `wandering` one; its "
+    "curve stops at the last converged load",
     parts={
         BLOCK: Part(("block that",), [*zip(BLOCKS)], block_row),
         PART: Part(("wall", "l_c / joint", "steps"), [*product(WALLS, ARMS, INCREMENTS)], measure),

@@ -1,8 +1,8 @@
-"""Too long a time step: where a wall begins to vibrate ever more, and what a run of it says then.
+"""Time steps that are too long: where vibrations of a wall start to grow, and what a run reports then.
 
-Central differences multiply a mode of frequency ω by (x + √(x² − 1))² a step where x = ω Δt / 2 exceeds one, and
-leave it bounded below. Lagged viscous damping of ratio ξ moves the edge to ω Δt = 2 (√(1 + ξ²) − ξ), local damping α
-to 2 / √(1 + α).
+Central differences multiply a mode of frequency ω by (x + √(x² − 1))² per step if x = ω Δt / 2 exceeds one, and keep it
+bounded below that. Lagged viscous damping of ratio ξ moves the limit to ω Δt = 2 (√(1 + ξ²) − ξ), local damping α to
+2 / √(1 + α).
 """
 
 import math
@@ -26,12 +26,12 @@ from runningbond.scene import Array, JointMaterial, Stiffness
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.walls import bonded, boxes, outcome_row
 
-STEPS, STEPS_DAMPED = 4000, 100_000  # after which a vibration that has not grown is not going to, and a damped one
-PIECE, CLOSE = 20, 1e-4  # steps between two looks at a vibration, relative accuracy of an edge
-SMALL, GROWN = 1e-20, 1e6  # size of a vibration at its start, growth by which it is told from one that beats
-TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)  # time steps at which growth is measured, in critical ones
-MUCH = 1.05  # critical steps that a user's run is given
-KINDS: dict[str, tuple[ModeCount, bool]] = {  # modes of a block, and whether masses are scaled
+STEPS, STEPS_DAMPED = 4000, 100_000  # steps after which a vibration that has not grown is bounded, undamped and damped
+PIECE, CLOSE = 20, 1e-4  # steps between two checks of a vibration, relative accuracy of an edge
+SMALL, GROWN = 1e-20, 1e6  # initial size of a vibration, and growth that distinguishes it from beating
+TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)  # time steps with measured growth, relative to the critical one
+MUCH = 1.05  # time step of a user's run, relative to the critical one
+KINDS: dict[str, tuple[ModeCount, bool]] = {  # modes per block, and whether masses are scaled
     "rigid blocks, 3 modes": (3, True),
     "uniform strains, 6 modes, scaled": (6, True),
     "uniform strains, 6 modes": (6, False),
@@ -44,22 +44,22 @@ GROWTH, LOCAL, VISCOUS = "growth a step at ω Δt", "largest ω Δt, local dampi
 
 
 def growth_at(times: float) -> float:
-    """Growth a step at so many critical steps, by theory."""
+    """Theoretical growth per step, for a time step relative to the critical one."""
     return (times + math.sqrt(times**2 - 1)) ** 2 if times > 1 else 1.0
 
 
 def critical_row(kind: str) -> Row:
-    """The critical step of W1 whose joints hold, without damping."""
+    """The critical step of W1 with bonded joints, without damping."""
     modes, scaled = KINDS[kind]
     wall = modal_wall(bonded(published_scene(WALL)), modes=modes)
     return critical_step(system_of(wall, damping=0.0, mass_scaling=scaled))
 
 
 def critical_step(system: BlockSystem) -> Row:
-    """The critical step by the largest eigenvalue and as measured, the bound from each block, and growth at `TIMES`."""
+    """The critical step from the largest eigenvalue and as measured, the bound of each block, and growth at `TIMES`."""
     frequencies, shapes = vibrations(system)
     exact, bound = 2 / float(frequencies[-1]), 2 / math.sqrt(system.interface.frequency_squared)
-    # The highest mode, so that its growth is seen as soon as it is there, and a little of every other.
+    # Start with the highest mode, whose growth shows at once, and a small part of every other mode.
     start = shapes[:, -1] + 1e-6 * shapes @ np.random.default_rng(1).normal(size=shapes.shape[1])
 
     def growth(step: float) -> float:
@@ -73,7 +73,7 @@ def critical_step(system: BlockSystem) -> Row:
 
 @cache
 def one_mass() -> tuple[BlockSystem, float, Array]:
-    """A tall block whose joint resists compression far more than shear: its system, its ω [1/s] and its motion."""
+    """A tall block on a joint far stiffer in compression than in shear: its system, its ω [1/s] and its mode shape."""
     joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 1e7))
     system = rigid_system(bonded(replace(boxes((0, 0, 0.1, 0.4), joint=joint), thickness=1.0)))
     frequencies, shapes = vibrations(system)
@@ -81,7 +81,7 @@ def one_mass() -> tuple[BlockSystem, float, Array]:
 
 
 def mass_row(what: str, value: float) -> Row:
-    """Growth of one mass beyond its edge, or its edge with damping, beside theory."""
+    """Growth of one mass beyond its stability limit, or its limit with damping, beside theory."""
     if what == GROWTH:
         return {"measured": _mass_growth(value), "theory": growth_at(value / 2), "allowed": 1e-6}
     theory = 2 / math.sqrt(1 + value) if what == LOCAL else 2 * (math.sqrt(1 + value**2) - value)
@@ -91,17 +91,17 @@ def mass_row(what: str, value: float) -> Row:
 
 def _mass_growth(omega_dt: float, local: float = 0.0, viscous: float = 0.0) -> float:
     system, frequency, shape = one_mass()
-    # The run's damping ratio is that at the bound of the system's frequencies.
+    # The damping ratio of a run refers to the upper bound of the system's frequencies.
     ratio = viscous * math.sqrt(system.interface.frequency_squared) / frequency
     return _growth(Run(system, local=local, viscous=ratio, dt=omega_dt / frequency), shape, STEPS_DAMPED)
 
 
 def _growth(run: Run, shape: Array, steps: int) -> float:
-    """Growth of a free vibration a step, once the fastest-growing part of it outgrows all others."""
+    """Growth per step of a free vibration, once its fastest-growing part dominates."""
     system, state, moving = run.system, State.at_rest(run.system), np.isfinite(run.system.mass)
     state.motion += SMALL * shape
 
-    def size() -> float:  # it need only grow as the vibration does
+    def size() -> float:  # any measure proportional to the vibration
         square = system.interface.frequency_squared * state.motion[moving] ** 2 + state.velocity[moving] ** 2
         return float(np.sqrt(system.mass[moving] @ square))
 
@@ -116,7 +116,7 @@ def _growth(run: Run, shape: Array, steps: int) -> float:
 
 
 def _edge_of(growth: Callable[[float], float], low: float) -> float:
-    """Largest step that does not grow; `low` does not."""
+    """Largest step without growth, searched for from `low`, which has none."""
     high = 2 * low
     while growth(high) <= 1:
         low, high = high, 2 * high
@@ -127,7 +127,7 @@ def _edge_of(growth: Callable[[float], float], low: float) -> float:
 
 
 def run_beyond(model: str, times: float = MUCH) -> Outcome:
-    """What W1 as it was published comes to at so many critical steps."""
+    """Outcome of W1 as published, with a time step relative to the critical one."""
     scene = published_scene(WALL)
     if model == "fem":
         wall = modal_wall(scene)
@@ -165,8 +165,8 @@ DAMPED = {GROWTH: (2.01, 2.1), LOCAL: (0.2, 0.5, 0.8), VISCOUS: (0.05, 0.3, 1.0)
 STUDY = Study(
     "time-step",
     "Time step",
-    trusted="the step is at most the bound from each block alone, which lies inside the critical one",
-    beyond="`failed`, with the step taken and one that is safe",
+    trusted="the step is at most the bound computed block by block, which is below the critical step",
+    beyond="`failed`, with the step taken and a safe one",
     parts={
         CRITICAL: Part(("blocks",), [*zip(KINDS)], critical_row),
         MASS: Part(("what", "value"), [(what, x) for what in DAMPED for x in DAMPED[what]], mass_row),

@@ -1,12 +1,12 @@
-"""The verdict: how small the unbalanced force of a wall at rest must be, and how far one that falls must have come.
+"""The verdict: how small the unbalanced force of a wall at rest must be, and how far a collapsing wall must have moved.
 
-A wall loaded beyond λ_c is driven by (λ − λ_c) F and stays unbalanced by that, so a threshold of rest r, in force
-units, takes it for standing up to
+A wall loaded beyond λ_c is driven by (λ − λ_c) F and remains unbalanced by that force. A rest threshold r, in force
+units, therefore accepts it as standing up to
 
     λ − λ_c = r / w,                                                                                           (4)
 
-w the largest unbalanced force of its motion for each unit of λ − λ_c (`KnownWall.unbalanced`). The other way round, a
-wall that settles or slips a little, and is caught, is taken for falling where that is far enough.
+where w is the largest unbalanced force of its motion per unit of λ − λ_c (`KnownWall.unbalanced`). Conversely, a wall
+that settles or slips a little before it stops is taken for collapsing if the collapse displacement is as small as that.
 """
 
 from collections.abc import Sequence
@@ -30,13 +30,13 @@ WALLS = (SLIDING, TOPPLING, W1)
 WEIGHTLESS = "point-load-4"  # the published wall without weight
 REST, FAR, INTERVAL = ("rest [force units]", "u_crit [block sizes]", "steps between looks")
 DEFAULT: dict[str, float] = {REST: SUITE.rest, FAR: U_CRIT, INTERVAL: SUITE.interval}
-LOOSE = (0.01, 0.03)  # thresholds of rest so loose that (4) is seen
+LOOSE = (0.01, 0.03)  # rest thresholds that are loose enough for (4) to show
 TINY, LARGE = (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6), (1e-4, 1e-3, *LOOSE, 0.1, 0.3)
 RESTS = (*TINY, *(x * SUITE.rest for x in (0.5, 1, 2)), *LARGE)
 FARS = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
 FARS_WEIGHTLESS = (1e-3, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4)
 INTERVALS = (1, 20, *(int(x * SUITE.interval) for x in (0.5, 1, 2)), 2000)
-SWEEPS = {(name, REST): RESTS for name in WALLS}  # values of a criterion on a wall, ascending
+SWEEPS = {(name, REST): RESTS for name in WALLS}  # values of a criterion by wall, ascending
 SWEEPS |= {(W1, FAR): FARS, (W2, FAR): FARS, (WEIGHTLESS, FAR): FARS_WEIGHTLESS, (W1, INTERVAL): INTERVALS}
 
 WIDTH, BUDGET = 0.005, 1_000_000  # relative width of the brackets, and steps after which a load is left undecided
@@ -44,10 +44,10 @@ PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
 
 
 def search(name: str, criterion: str, value: float) -> Row:
-    """Search for λ with one criterion changed, as slowly at first as the suite does."""
+    """Search for λ with one criterion changed, starting as slowly as the suite does."""
     scene = published_scene(name) if name == WEIGHTLESS else known_scene(name)
     chosen = DEFAULT | {criterion: value}
-    run = Run(rigid_system(scene))  # by its own inertia, to which the theory of false stability goes
+    run = Run(rigid_system(scene))  # with its own inertia, which the theory of false stability assumes
     first = FIRST_STEP / run.system.measure(run.system.live)
     criteria = Criteria(chosen[FAR] * scene.block_size, chosen[REST], BUDGET, int(chosen[INTERVAL]))
     result = load_steps(run, first, WIDTH, criteria)
@@ -55,7 +55,7 @@ def search(name: str, criterion: str, value: float) -> Row:
     if lower is None or upper is None or borne is None or verdict == "undecided":
         infeasible = lower is None and verdict == "collapse"
         return {"answer": "infeasible" if infeasible else "undecided", "λ lower": lower, "λ upper": upper}
-    # The suite leaves its bracket as wide as a loose threshold of rest makes it uncertain; here its edge is looked for.
+    # With a loose rest threshold the suite leaves its bracket as wide as its uncertainty; here its edge is bisected.
     settling = RAMP * result.rests[0][1].steps
     while upper - lower > WIDTH * upper:
         middle, state = (lower + upper) / 2, borne.copy()
@@ -74,13 +74,13 @@ def search(name: str, criterion: str, value: float) -> Row:
 
 
 def believed(name: str, rest: float) -> float:
-    """λ up to which a wall is taken for standing with a threshold of rest, by (4)."""
+    """λ up to which a rest threshold accepts a wall as standing, by (4)."""
     wall = known_wall(name)
     return wall.multiplier + rest / wall.unbalanced
 
 
 def plateau(rows: Sequence[Row]) -> tuple[float, float]:
-    """Smallest and largest value of a criterion about the suite's that find the same λ, to the width of brackets."""
+    """Smallest and largest value of a criterion around the suite's with the same λ, to within the width of brackets."""
     values = [row["value"] for row in rows]
     own = values.index(DEFAULT[rows[0]["criterion"]])
     multiplier = rows[own]["λ"]
@@ -96,7 +96,7 @@ def sweep(rows: Rows, name: str, criterion: str) -> list[Row]:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Ranges of every criterion in which λ is the suite's."""
+    """Edges: range of each criterion in which λ is the suite's."""
     edges = []
     for name, criterion in SWEEPS:
         ends = zip(("smallest", "largest"), plateau(sweep(rows, name, criterion)), strict=True)
@@ -133,7 +133,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
 
 
 def _unit(rows: Sequence[Row]) -> float:
-    """λ that is known, or else that of the suite's own value."""
+    """The known λ, or else λ for the suite's own value."""
     own = next(row for row in rows if row["value"] == DEFAULT[row["criterion"]])
     return float(own["λ"] / own.get(SCALED, 1.0))
 
@@ -141,7 +141,7 @@ def _unit(rows: Sequence[Row]) -> float:
 def _draw_sweep(
     axes: Axes, rows: Sequence[Row], label: str, colour: str, marker: str, bottom: float, *, joined: bool = False
 ) -> None:
-    """Middles of a sweep's brackets, narrower than their marks, the suite's in a circle; at the bottom, no answer."""
+    """Plot the middles of a sweep's brackets, narrower than the marks; values without an answer are at the bottom."""
     drawn = {row["value"]: row["λ"] / _unit(rows) for row in rows if row.get("λ") is not None}
     line = "-" if joined else "none"
     axes.plot([*drawn], [*drawn.values()], marker, ls=line, lw=0.8, ms=5, color=colour, label=label)
@@ -156,10 +156,10 @@ def _draw_sweep(
 STUDY = Study(
     "verdict",
     "Verdict: when a wall is at rest, and when it has fallen",
-    trusted="λ is the same over decades of each criterion, and the suite's values stand inside",
-    beyond="a threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`; a u_crit too "
-    "small gives a wall without weight a λ too low, or `infeasible` where not even the settlement under the weight is "
-    "allowed; one too large costs steps, and in the end is `undecided`",
+    trusted="λ is the same over decades of each criterion, and the suite's values lie inside",
+    beyond="a rest threshold that is too loose gives a λ too high by (4), one below rounding `undecided`; a u_crit "
+    "that is too small gives a λ too low for a wall without weight, or `infeasible` if it does not even allow"
+    " the settlement under the weight; one that is too large costs steps, and finally ends `undecided`",
     parts={PART: Part(("wall", "criterion", "value"), [(*x, y) for x, ys in SWEEPS.items() for y in ys], search)},
     charts=[Chart("λ by the threshold of rest and by the displacement that counts as a collapse", _draw, size=(10, 5))],
     fits=fits,
