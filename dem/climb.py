@@ -21,7 +21,7 @@ COSTLY_SOLVES = 200
 Falls cost more systems than rests, and a step of twice that width ends in two of them: at its end and at its middle."""
 
 INTERRUPTED, NO_VERDICT, BUDGET_SPENT = "interrupted", "it neither rested nor fell", "the budget ran out"
-"""Why a wall is undecided: after Ctrl-C, after too many undecided loads, or after too many linear systems."""
+"""Why a wall is undecided: after Ctrl-C, because of undecided loads, or after too many linear systems."""
 
 
 def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[float] = ()) -> None:
@@ -80,7 +80,7 @@ def ends(path: LoadPath) -> tuple[float, float]:
 
 
 def look_closer(path: LoadPath, tolerance: float, past: int) -> None:
-    """Follow a wall past its bracket, and try whether it rests under a load just above the curve's peak."""
+    """Follow a wall past its bracket, and check whether it rests under a load just above the curve's peak."""
     path.follow(past)
     # Within the bracket, the curve's peak is a better lower end, and a load just above it may be a better upper end.
     closer = (1 + tolerance / 4) * peak(path).multiplier

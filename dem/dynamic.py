@@ -62,7 +62,7 @@ def dem_dynamic(
     Returns
     -------
     Outcome
-        As from `collapse_by_steps`.
+        As returned by `collapse_by_steps`.
     """
     check_scene(scene)
     if scene.history:

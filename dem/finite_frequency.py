@@ -20,7 +20,7 @@ DIGITS = 9
 
 
 def frequencies_squared(sides: RigidSides, normal: Array, shear: Array, mass: Array) -> tuple[float, float]:
-    """Bound of the largest ω² [1/s²] with every contact closed, and the Lanczos estimate of it.
+    """Bound of the largest ω² [1/s²] with every contact closed, and its Lanczos estimate, which is slightly below it.
 
     The sides are placed by `gather_sides`, the stiffnesses ``(n,)`` [Pa/m] are those of their ends, and the masses
     ``(3 nb,)`` are modal.
@@ -40,7 +40,7 @@ def frequencies_squared(sides: RigidSides, normal: Array, shear: Array, mass: Ar
 
 @kernel
 def _rows(sides: RigidSides, normal: Array, shear: Array, root: Array, share: Array, rows: Array, own: Array) -> None:
-    """Write opening, then slip of ends per motion of blocks b and a, times √(stiffness / mass), ``(n, 12)``.
+    """Write opening, then slip of ends per motion of blocks b and a, times √(area × stiffness / mass), ``(n, 12)``.
 
     Also sum up the mass-scaled stiffness ``(nb, 3, 3)`` of each block, with its `share` ``(n, 2)`` of its ends.
     """

@@ -35,7 +35,7 @@ def finite_system(scene: Scene) -> BlockSystem:
     Raises
     ------
     SceneError
-        As from `check_finite`, `ContactMaterials` and `Outline.of`.
+        As raised by `check_finite`, `ContactMaterials` and `Outline.of`.
     """
     check_finite(scene)
     contacts = RigidContacts(scene)

@@ -1,6 +1,6 @@
 """Runs of alike joints: a numbering of blocks and joints that lets kernels step through memory consecutively.
 
-A wall of equal blocks has few kinds of joints: joints of one kind have the same thickness and the same position
+A wall of equal blocks has few kinds of joints: joints of one kind have the same material, area and position
 relative to their two blocks. Blocks are numbered column by column, from the bottom up, and the joints of one kind by
 their blocks: if joint j separates blocks p and q, joint j + 1 usually separates p + 1 and q + 1.
 """
@@ -19,7 +19,7 @@ from .rigid_kernels import RigidJoints
 RESOLUTION = 1e-9
 """Difference, relative to the wall's size, below which two joints are of one kind: far below the contact tolerance.
 
-Areas, which differ if joints differ in thickness, are compared relative to the largest joint area.
+Areas, which also depend on the thickness, are compared relative to the largest one.
 """
 
 
@@ -30,7 +30,7 @@ class JointOrder:
     block: Indices  # (nb,) position of each block in that order
     points: JointPoints  # the first points of all joints, then all second ones, and so on
     runs: RigidJoints
-    between: Along | None  # points between a joint's two ends; None if the ends are the only points
+    between: Along | None  # interpolation of the points from a joint's two ends; None if the ends are the points
 
 
 def joint_order(scene: Scene) -> JointOrder:

@@ -14,10 +14,10 @@ from .pushover import StaticState
 from .static_system import Control, StaticSystem, dot
 
 MIN_STEPS = 25
-"""Smallest number of steps in the longest leg of a path, from one reversal to the next."""
+"""Smallest number of steps in the longest leg of a path, from one reversal to the next, in the first run."""
 
 STEP_GROWTH = 1.3
-"""Ratio of a step's length to that of the step before, up to the longest step."""
+"""Ratio of a step's length to that of the step before, up to the longest step, in the first run."""
 
 REGULARISATION = 1e-6
 """Part of the elastic stiffness that open points keep in the tangent of a first guess, which makes it regular."""
@@ -73,7 +73,7 @@ class StaticLead:
 
     @cached_property
     def elastic_step(self) -> float:
-        """Length of the first step: the displacement of the elastic, closed wall under the load `first_step`."""
+        """Length of the first step: the elastic wall's displacement, or share of settlement, under `first_step`."""
         system = self.system
         if system.support_jump is not None:
             return self.first_step / float(np.abs(system.support_jump).max())

@@ -1,9 +1,9 @@
 """Driven walls: a beam or supports follow prescribed displacements, from equilibrium to equilibrium.
 
-Each displacement is held until the wall rests, found at once by Newton's method or after creep (`relaxation`): a wall
-that snaps is followed to its next equilibrium at that displacement. After the dead load and after each reversal, steps
-start at the wall's elastic size and then grow, so that friction is taken up along the path. The whole path is repeated
-in steps half as long until its answer settles.
+Each displacement is held until the wall rests: Newton's method finds the equilibrium, or the wall creeps to it
+(`relaxation`). A wall that snaps is followed to its next equilibrium at that displacement. After the dead load and each
+reversal, steps start at the wall's elastic size and then grow, so that friction is taken up along the path. The whole
+path is repeated in steps half as long until its answer settles.
 
 The answer is the largest reaction of a beam's drive along its first move, or the share of the dead load that supports
 carry at the prescribed settlement. It is a collapse load if a mechanism has formed: if it changes by less than the
@@ -135,7 +135,7 @@ def _least(lead: StaticLead) -> float:
 
 
 def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
-    """Add curve, forces and motion at the answer: a settlement's whole motion, a drive's last increment of motion."""
+    """Add curve, forces at the answer, and motion: of the fall, the settlement, or the drive's farthest step."""
     system, states = lead.system, run.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
     most = int(force.argmax()) if not lead.settles else len(states) - 1

@@ -33,7 +33,7 @@ ROUNDING = 1e-12
 """Step of the displacement, relative to the displacement so far, below which its direction is only rounding."""
 
 ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
-"""Factors of such a step that are tried in turn, and whether the wall may creep then: as a last resort, to snap."""
+"""Factors of such a step that are tried in turn, and whether the wall may creep then: as a last resort, if it snaps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class LoadPath:
     elastic: float = 0.0  # motion under a unit live load while joints neither open nor slip
     hangs: float = 0.0  # motion until ties yield
     past: list[StaticState] = field(default_factory=list)  # equilibria past the largest load, under displacements
-    upper: float | None = None  # smallest load under which the wall fell, or that no wall exceeds
+    upper: float | None = None  # smallest load under which the wall fell, or above which it cannot stand
     unclear: list[float] = field(default_factory=list)  # loads under which the wall neither rested nor fell
     undecided: str = ""  # why there is no bracket
     fall: Array | None = None  # (nd,) motion in the last time step of the fall
@@ -83,7 +83,7 @@ class LoadPath:
         return self.rests[-1].multiplier
 
     def fall_over(self, multiplier: float) -> float:
-        """Motion that counts as a fall under a load, in units of the system: more than springs alone can yield."""
+        """Motion that counts as a fall under a load, in units of the system: far beyond elastic motion."""
         return max(self.far, GIVES * (self.elastic * abs(multiplier) + self.hangs))
 
     def push(self, multiplier: float, budget: int = MAX_SOLVES) -> Rest:
@@ -99,7 +99,7 @@ class LoadPath:
         return result
 
     def follow(self, budget: int) -> None:
-        """Find equilibria at growing displacements, from the last load to a fall, a failed step or the budget's end."""
+        """Find equilibria at growing displacements, from the last load to a fall, failed step or the budget's end."""
         if len(self.rests) < 2:
             return
         origin, before, last = self.rests[0].displacement, self.rests[-2], self.rests[-1]

@@ -53,11 +53,11 @@ CAUTIOUS, CAUTIOUS_STEPS = 0.6, 3
 """Lower bound of the factor of ε after a time step was given up, and the number of steps for which it holds."""
 
 FALL_RATIO, CREEP_RATIO = 0.9, 0.5
-"""Ratio of the unbalanced force to that at half the motion, from which on a far motion is a fall: at once, or only
-after `MAX_SOLVES`. The latter is lower because blocks that hit others on the way lose some of the force each time."""
+"""Ratio of the unbalanced force to that at half the motion, from which on a motion beyond `far` is a fall: at once,
+or after `MAX_SOLVES`. The latter is lower because blocks that hit others on the way lose some force each time."""
 
 MAX_SOLVES = 3000
-"""Linear systems after which creep that neither rests nor falls is left undecided, unless it continues far away."""
+"""Linear systems after which creep is left undecided, unless it has gone far and slowed down little (`CREEP_RATIO`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ def relax(
     Parameters
     ----------
     guess : (n,) float
-        Initial unknowns; they should satisfy the control, or the first step is judged by forces it must disturb.
+        Initial unknowns. They should satisfy the control: a step that restores it may increase the residual and fail.
     plastic_slip : (np,) float
         History of the joint points.
     control

@@ -40,13 +40,13 @@ FIRST_STEP = 0.03
 """First load, in units of `Equilibrium`."""
 
 FALLEN = 0.05
-"""Motion of a block that counts as a fall unless it slows down, in heights of the lowest block."""
+"""Motion of a block that counts as a fall unless it slows down, relative to the smallest block height."""
 
 BUDGET = 20_000
 """Linear systems after which a wall is left undecided."""
 
 PAST = 500
-"""Linear systems that may be spent past the largest load."""
+"""Linear systems that may be spent past the largest load, each time the curve is followed or a load tried there."""
 
 OTHER_STEP = 0.5
 """First step of the second load path, relative to that of the first path."""
@@ -77,11 +77,11 @@ def dem_static(
         First load, in units in which the live load equals the largest dead load, or for a weightless wall the strength
         of the strongest joint point. Steps grow while equilibrium is found easily, and shrink while it is not.
     collapse
-        Motion of a block that counts as a fall unless it slows down, in heights of the lowest block.
+        Motion of a block that counts as a fall unless it slows down, relative to the smallest block height.
     budget
         Linear systems on each load path after which the wall is left undecided.
     past
-        Linear systems that may be spent on the curve past the largest load, and on refining the bracket.
+        Linear systems that may be spent past the largest load, each time the curve is followed or a load tried there.
     observe
         Called with every equilibrium of the first path as it is found, and at the end with those past the largest
         load; then with all those of the second path, if that ends lower.
@@ -178,7 +178,7 @@ def _look_closer(path: LoadPath, tolerance: float, past: int) -> str:
 
 
 def _apart(found: list[LoadPath]) -> list[LoadPath]:
-    """The paths if their brackets have no load in common, so that one rests where another falls; else none."""
+    """The paths if their brackets have no load in common, so that one rests where another falls; otherwise none."""
     lower, upper = zip(*map(ends, found), strict=True) if found else ((0.0,), (np.inf,))
     return [] if max(lower) < (1 - ROUNDING) * min(upper) else found
 
@@ -231,7 +231,7 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
 
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:
-    """Outcome of a wall without an equilibrium under its dead load; limit analysis yields how it falls."""
+    """Outcome of a wall that was not brought to rest under its dead load; limit analysis shows whether it must fall."""
     fall = proved_outcome(system.equilibrium.scene)
     if fall.status == "infeasible":
         return replace(result, status="infeasible", message=fall.message, motion=fall.motion)

@@ -3,7 +3,7 @@
     B_nᵀ N + B_tᵀ S + Cᵀ r − f_dead − λ f_live = 0,    C q = c,    f_live · q = d  (or λ given)
 
 in the scaled freedoms and forces of `Equilibrium`; displacements are measured in the elastic deformation of the
-stiffest joint point under the unit of force, so that stiffnesses are of order one too. Unknowns are ordered
+stiffest joint point or tie under the unit of force, so that stiffnesses are at most one. Unknowns are ordered
 x = (q, r, λ). The tangent has the same sparsity pattern in every step, which is set up once as sums of joint points'
 entries. Ties are points after those of the joints (`tied_law`). Supports that move add λ times their own jumps to those
 of the blocks; λ is then prescribed, and there is no live load.
@@ -42,7 +42,7 @@ class StaticSystem:
     equilibrium: Equilibrium  # scaled equilibrium of the blocks; ties are points after those of the joints
     law: PointLaw | TiedLaw  # scaled law of the joint points and ties
     length_unit: float  # displacement [m] that counts as 1
-    support_jump: Array | None = None  # (2, np) openings and slips due to the motion of supports at λ = 1
+    support_jump: Array | None = None  # (2, np + nt) openings and slips due to moving supports, at λ = 1
     held: Array | float = 0.0  # (n_pins,) prescribed values of the pinned motions
 
     @property
@@ -175,7 +175,7 @@ class StaticSystem:
 
     @cached_property
     def _tie_ends(self) -> Array:
-        """Forces (all but λ's) of a unit pull at each first, then each second end of a tie, ``(n − 1, 2 nt)``."""
+        """Forces on q and r of a unit pull at the first end of each tie, then at the second ends, ``(n − 1, 2 nt)``."""
         scene = self.equilibrium.scene
         ends = np.zeros((self.unknowns - 1, 2 * len(scene.ties)))
         ends[: self.freedoms] = _rows(self.equilibrium, tie_ends(scene)).toarray()
@@ -287,7 +287,7 @@ def static_system(scene: Scene) -> StaticSystem:
 
 
 def with_late_pins(system: StaticSystem, x: Array) -> tuple[StaticSystem, Array]:
-    """Add the pins that act once the dead load is on, as placed in unknowns ``(n,)``; add their reactions to these."""
+    """Add pins that hold the displacements in unknowns ``(n,)``, and their reactions, zero so far, to the unknowns."""
     equations = system.equilibrium
     late = _rows(equations, pin_operator(equations.scene, equations.scene.late_pins))
     reaction = csc_array(hstack([equations.reaction, late]))

@@ -34,7 +34,7 @@ class NodalTables(NamedTuple):
         The tables, ``(displacements, modes)`` each, and their transposes, concatenated over the templates.
     still : (1,) int
         Index of the first displacement that is always zero.
-    nodal : float
+    nodal : (n,) float
         Buffer of the displacements.
     """
 

@@ -1,4 +1,4 @@
-"""Inertia coupled across joints for soft blocks between stiffer joints, where mass scaling alone allows no long step.
+"""Inertia coupled across joints for soft blocks between stiffer joints, where mass scaling does not allow long steps.
 
 A wall of soft blocks vibrates slowly, but two of its blocks on their joint vibrate as fast as rigid ones: a period
 takes ten or more times as many steps as with rigid blocks (`benchmarks/studies/stiff_blocks.py`). Heavier deformable
@@ -34,7 +34,7 @@ STEP_RATIO = 2.0
 """Masses are coupled if the lowest period takes more than this many times the steps it takes with rigid blocks."""
 
 MOST_STEPS = 200
-"""Number of steps per lowest period that coupling aims at; with rigid blocks' number of steps if that is smaller."""
+"""Number of steps per lowest period that coupling aims at, or the number with rigid blocks if that is smaller."""
 
 MOST_BLOCKS = 60
 """Number of movable blocks above which masses are not coupled: each force accelerates all blocks, at a cost that grows

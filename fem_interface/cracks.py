@@ -1,4 +1,4 @@
-"""Potential cracks inside blocks: every triangle becomes a piece of its own, tied to its neighbours by inner joints.
+"""Potential cracks inside blocks: every triangle becomes a piece, connected to its neighbours by inner joints.
 
 The scene gives the strength and stiffness of inner joints (`Scene.inner_joint`). Rigid blocks crack along their axis
 only; the mesh of such a scene has triangle edges along that axis. Here all other edges between triangles become joints

@@ -68,7 +68,7 @@ class DeformableContacts:
         corner, _ = resting(self.outline, ends, rigid)
         v, _, _, _, e, f = ends.ends.astype(np.int64).T
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
-        # The inner corner is the last of side e or the first of f at the low end, and the reverse at the high end.
+        # The resting corner is the last of side e or the first of f at the low end, and the reverse at the high end.
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
         # An end represents its side up to half a spacing before the first point far enough inside to carry load.
         length = self.blocks.nodes.length[facet] / self.blocks.parts

@@ -34,9 +34,9 @@ FREQUENCY_TOLERANCE = 1e-3
 class Allowance:
     """How far masses may be scaled.
 
-    In walls of less than ten blocks, at most two thirds of the frequencies that the wall has with rigid blocks are
-    preserved. In the highest of them single blocks vibrate against the others, and preserving these would allow almost
-    no scaling.
+    At most the lowest two thirds of the frequencies that the wall has with rigid blocks are preserved, which matters in
+    walls of fewer than ten blocks. In the highest ones single blocks vibrate against the others, and preserving these
+    would allow almost no scaling.
     """
 
     lowest: int  # number of lowest frequencies that scaling preserves
@@ -129,7 +129,7 @@ def _tightest(wall: ModalWall, of_joints: float = 0.0) -> list[_Kind]:
 
 
 def _scaling_stiffness(wall: ModalWall, kinds: list[_Kind]) -> Array:
-    """Stiffness that masses are scaled for, ``(nd,)``: `wall.stiffness` if the share of the joints' does not count."""
+    """Stiffness that masses are scaled for, ``(nd,)``: equal to `wall.stiffness` if `of_joints` is zero."""
     each, result = iter(kinds), []
     for template in wall.templates:
         stiffness, moving = template.modes.stiffness.copy(), np.isfinite(template.modes.mass)

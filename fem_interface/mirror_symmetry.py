@@ -96,7 +96,7 @@ def facing(points: Array, axis: int) -> Indices:
 
 
 class TableRows(NamedTuple):
-    """Nonzero entries of tables, row by row, in terms of `TERMS` entries each.
+    """Nonzero entries of tables, row by row, in groups ("terms") of `TERMS` entries.
 
     Parameters
     ----------

@@ -73,7 +73,7 @@ def fem(
     distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene from the motion of its deformable blocks; with ground motion, by `critical_scale`.
+    """Find the collapse load of a scene with deformable blocks; if its ground moves, the scale by `critical_scale`.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def fem(
     loads
         Whether loads proportional to mass are consistent with the mass, or act at inner nodes as in the paper.
     mass_scaling
-        Make deformable modes heavy enough not to limit the time step.
+        Make deformable modes heavy enough not to limit the time step; at small displacements see `run_of_longer_steps`.
     energies
         Source of the joints' fracture energies; without fracture energies joints are perfectly plastic.
     displacements
@@ -105,8 +105,8 @@ def fem(
     Returns
     -------
     Outcome
-        As of `collapse_by_steps`. `force` lists the points joint by joint; if the mesh's points are not those of whole
-        joints, it lists forces with the same resultants at the joints' ends. `motion` is the blocks' rigid motion.
+        As returned by `collapse_by_steps`. `force` lists the points joint by joint; if the mesh's points are not those
+        of whole joints, it lists forces with equal resultants at joint ends. `motion` is the blocks' rigid motion.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -202,7 +202,7 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
 def fem_response(
     scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
 ) -> Response:
-    """Response of a scene's deformable blocks to λ times the motion of its ground; see `follow`."""
+    """Response of a scene's deformable blocks to its ground motion times `scale`; settings as for `follow`."""
     resting = Resting.of(scene, "fem", finite_system(node_outline(with_impacts(scene), cells, modes)))
     return follow(resting, scale, **settings)
 

@@ -28,7 +28,7 @@ MOST_MODES, BENDING = 20, 10
 deflection as a cantilever is 5.5 % too small for 240 × 60 mm and 14.5 % for 240 × 120 mm."""
 
 TIE_TOLERANCE = 1e-6
-"""Relative tolerance within which modes have the same ω² as the last mode of a given number, and are taken in too: a
+"""Relative difference of ω² up to which modes count as equally soft as the last one asked for, and are included too: a
 square block bends one way as easily as the other."""
 
 DEGENERATE = 1e-9

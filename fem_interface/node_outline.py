@@ -104,7 +104,7 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     Raises
     ------
     SceneError
-        As in `check_finite`, `ContactMaterials` and `Outline.of`.
+        As raised by `check_finite`, `ContactMaterials` and `Outline.of`.
     """
     check_finite(scene)
     ContactMaterials(scene)

@@ -201,7 +201,7 @@ def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tupl
     Parameters
     ----------
     inset : (nj,) float
-        Distance between the rule's outermost points and the ends of each joint [m].
+        Distance by which the rule's interval is moved in from the ends of each joint [m].
 
     Returns
     -------
@@ -232,7 +232,7 @@ def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tupl
 
 
 def _on_joints(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:
-    """Apply a rule to every whole joint; returns as `_on_elements`, with one row for each point and its element."""
+    """Apply a rule to every whole joint; returns as in `_on_elements`, with one row for each point and its element."""
     elements = np.bincount(mesh.joint, minlength=len(scene.joints))
     along = 0.5 + (0.5 - inset / scene.joints.length)[:, None] * rule.nodes
     # The elements of a joint are equally long. A point where two of them meet is assigned to the first.

@@ -33,7 +33,7 @@ during the longest leg of the beam's path."""
 
 
 def with_heavier_pieces(wall: ModalWall, system: BlockSystem) -> BlockSystem:
-    """Give pieces of blocks more inertia against one another if a beam drives the wall slowly; else do nothing.
+    """Give pieces of blocks more inertia against one another if a beam drives the wall slowly; otherwise none.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ import numpy as np
 from runningbond.scene import Bond, Mask, Scene
 
 PLACE_TOLERANCE = 1e-3
-"""Distance from a position of the bond, in half blocks, within which a head joint counts as being there."""
+"""Tolerance, in half blocks, on the horizontal positions of head joints and on the lengths of bed joints."""
 
 
 def between_blocks(scene: Scene) -> Mask:
@@ -14,9 +14,9 @@ def between_blocks(scene: Scene) -> Mask:
 
 
 def head_places(scene: Scene, bond: Bond, heads: Mask, among: Mask) -> set[tuple[int, int]] | None:
-    """Positions of head joints, in half blocks from the left and courses from the bottom of some blocks.
+    """Positions of the head joints `heads`, in half blocks from the left and courses from the bottom of blocks `among`.
 
-    None if a head joint is off the half-block grid.
+    None if the middle of a head joint lies horizontally off the half-block grid.
     """
     low, _ = scene.blocks.extent(among)
     middle = (scene.joints.ends[heads].mean(axis=1) - low) / np.array([bond.width / 2, bond.height])
@@ -27,7 +27,7 @@ def head_places(scene: Scene, bond: Bond, heads: Mask, among: Mask) -> set[tuple
 
 
 def is_running_bond(scene: Scene, bond: Bond) -> bool:
-    """Whether blocks overlap by half a block everywhere: heads shifted by half a block, no bed longer than that.
+    """Whether blocks overlap by half a block everywhere: heads shifted by that much, no bed joint longer than that.
 
     Ends may be toothed and openings cut out.
     """

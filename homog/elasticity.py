@@ -50,7 +50,7 @@ def elastic_moduli(
     bed_normal, bed_shear = AT_LEAST_ZERO.take("bed_normal", bed_normal), AT_LEAST_ZERO.take("bed_shear", bed_shear)
     head_normal = AT_LEAST_ZERO.take("head_normal", head_normal)
     head_shear = AT_LEAST_ZERO.take("head_shear", head_shear)
-    # Shear strain tilts the bond against head shear and bed normal stiffness, in series with sliding on beds.
+    # Under shear strain, block rotation (against head shear and bed normal stiffness) acts in series with bed sliding.
     tilting = b * head_shear + bed_normal * b**2 / (4 * a)
     sliding = a * bed_shear
     in_series = tilting * sliding / (tilting + sliding) if sliding else 0.0
@@ -60,7 +60,7 @@ def elastic_moduli(
 def rigid_moduli(scene: Scene) -> Moduli:
     """Closed-form moduli [Pa] of a wall's running bond of rigid blocks.
 
-    Joints with the ground or supports are excluded. Openings, toothed ends and an inset have no influence.
+    Joints with the ground or the beam are excluded. Openings, toothed ends and an inset have no influence.
 
     Raises
     ------

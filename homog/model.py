@@ -22,7 +22,7 @@ from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO
 from .bond import head_places
 
 FINENESS = (1, 4, 8, 16)
-"""Smaller of the number of courses and of blocks per course from which each pair of `OFF` applies."""
+"""Smallest min(number of courses, blocks per course) for which each pair of `OFF` applies."""
 
 OFF = {
     False: ((-0.646, 0.0), (-0.646, 0.0), (-0.566, 0.0), (-0.420, 0.060)),
@@ -40,9 +40,9 @@ LOAD_TOLERANCE = 1e-8
 def crack_slope(block_width: float, block_height: float, friction: float) -> float:
     """Steepest crack slope s of blocks b × a [m] with friction tan φ; inf without friction.
 
-    A crack opens perpendicular to itself. Blocks can follow as long as both head and bed joints open by at least tan φ
-    times their slip (`StrengthDomain`). Bed joints allow s = (m / tan φ)^{1/2}, and so do head joints if
-    2 μ² (μ m)^{1/2} ≤ 1 + μ m, which holds for all blocks up to μ = 1. Beyond, both reach their limit at the root of
+    The jump across a crack is perpendicular to it. Blocks can follow as long as head and bed joints open by at least
+    tan φ times their slip (`StrengthDomain`). Bed joints allow s = (m / tan φ)^{1/2}, and so do head joints if
+    2 μ² (μ m)^{1/2} ≤ 1 + μ m, which holds for all blocks up to μ = 1. Otherwise s is the smallest positive root of
     (1/μ + m − μ) s² − 2 μ m s + m = 0.
 
     Raises
@@ -86,9 +86,9 @@ def homog(scene: Scene) -> Outcome:
     """Collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
 
     The scene is a full rectangular panel on a frictional base or a fixed first course, from whose top its height is
-    then measured; any other scene raises a `SceneError`. The outcome has no bracket: a mechanism of the continuum
-    proves that the multiplier is an upper bound for the continuum, but for the wall of blocks it is an estimate that
-    may be too high or too low.
+    then measured; any other scene raises a `SceneError`. Crushing is neglected. The outcome has no bracket: a mechanism
+    of the continuum proves that the multiplier is an upper bound for the continuum, but for the wall of blocks it is an
+    estimate that may be too high or too low.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -119,7 +119,7 @@ def deviation(bond: Bond, length: float, height: float) -> tuple[float, float]:
     >>> deviation(Bond(0.24, 0.06), length=1.44, height=0.72)
     (-0.646, 0.0)
     """
-    # The length is a whole number of half blocks, despite rounding; 7.5 blocks count as 7.
+    # The length is a whole number of half blocks, rounding errors are removed; 7.5 blocks belong to the class below 8.
     across = min(round(2 * length / bond.width) / 2, round(height / bond.height))
     return OFF[bond.height > bond.width * (1 + 1e-9)][max(0, int(np.searchsorted(FINENESS, across, side="right")) - 1)]
 

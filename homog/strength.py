@@ -2,9 +2,9 @@
 
 With macroscopic strain rate D and a rotation ω common to all blocks, the jump across a joint between blocks whose
 centres are Δx apart is (D − Ω) Δx, constant along the joint: Δx = (b, 0) across head joints and (±b/2, a) across bed
-joints. Tractions may therefore be constant along each joint, too. Stresses Σ are carried if some tractions within the
-strength of the joints have the power Σ : D on the jumps of every D and ω. Joints carry σ ≤ f_t and
-|τ| ≤ s + (f_t − σ) tan φ, and those with a compressive strength also p² + C_ss τ² ≤ f_m², p = max(0, −σ).
+joints. Tractions may therefore be constant along each joint, too. Stresses Σ are carried if there are tractions within
+the joint strength whose power on the jumps, per area of the wall, is Σ : D for every D and ω. Joints carry σ ≤ f_t,
+|τ| ≤ s + (f_t − σ) tan φ and, with a compressive strength f_m, p² + C_ss τ² ≤ f_m², p = max(0, −σ); s is τ at f_t.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from runningbond.scene import Array, Bond, JointMaterial, SceneError
 from runningbond.scene.ranges import SMALLEST, Range
 
 CAP_TOLERANCE = 1e-10
-"""Relative amount by which tractions may exceed a cap; if they exceed it by more, a tangent is added there."""
+"""Relative excess of tractions over a cap above which a tangent is added there."""
 
 ROUNDS = 100
 """Largest number of rounds of tangents; each round reduces the excess over the caps to a quarter or less."""
@@ -44,7 +44,7 @@ class StrengthDomain:
         Returns
         -------
         float
-            t [Pa per unit of the direction]; inf where any is carried.
+            t [Pa per unit of the direction]; inf if every t is carried.
 
         Raises
         ------
@@ -129,7 +129,7 @@ def _stress(direction: object) -> Array:
     """A direction in stress space as an array ``(3,)``."""
     if not isinstance(direction, (tuple, list, np.ndarray)) or np.shape(direction) != (3,):
         raise SceneError("direction", "must be three numbers, Σ11, Σ22 and Σ12", direction)
-    # Values negligible beside the others may be smaller than the smallest number allowed in a scene.
+    # Values below the smallest number allowed in a scene are set to zero, unless all are.
     small = [isinstance(value, float) and abs(value) < SMALLEST for value in direction]
     if all(small):
         small = [False] * 3

@@ -26,8 +26,8 @@ class WallMesh:
     Parameters
     ----------
     points : (nn, 2) float
-        Nodes [m]. Those of a block's outline come first, counter-clockwise from its lowest corner, the left one if two
-        are level.
+        Nodes [m]. Those of a block's outline come first, counter-clockwise from the corner with the smallest 0.3 x + y,
+        the lower left one of a rectangle.
     first_node : (nb + 1,) int
         Block ``i`` owns the nodes ``first_node[i]`` to ``first_node[i + 1]``, excluding the last.
     block : (nn,) int
@@ -69,13 +69,13 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
         The wall.
     cells
         Number of cells in half a block along the course, and in a block's height: a full block of running bond has 2
-        `cells` by `cells` cells of four triangles. Blocks that do not form such a grid, e.g. those of drawings, get
+        `cells` by `cells` cells of four triangles. Blocks that do not form such a grid, e.g. irregular ones, get
         triangles of about that size.
 
     Raises
     ------
     SceneError
-        For an invalid or too large number of cells, and if gmsh cannot be loaded.
+        For an invalid or too large number of cells, and if gmsh cannot be loaded or has a session open.
     """
     check_whole_number("cells", cells)
     if 8 * cells**2 * len(scene.blocks) > MOST_TRIANGLES:

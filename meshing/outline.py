@@ -19,7 +19,7 @@ class NodeOutlines:
     Parameters
     ----------
     points : (n, 2) float
-        Nodes [m]; the first of a block is its lowest corner, the left one if two are level.
+        Nodes [m]; the first of a block is the corner with the smallest 0.3 x + y, the lower left one of a rectangle.
     corner : (n,) bool
         Whether a node is a corner of its block.
     first : (nb + 1,) int
@@ -27,7 +27,7 @@ class NodeOutlines:
     divisions : (nj,) int
         Number of equal parts of each joint.
     start : (nj, 2) int
-        Local number, on block a and on block b, of the first node of each outline on the joint.
+        Number, within the outlines of block a and block b, of the first node that each outline has on the joint.
     """
 
     points: Array
@@ -50,12 +50,12 @@ def outlines(scene: Scene, cells: int) -> NodeOutlines:
     scene
         The wall.
     cells
-        Parts of half a block along the course, and of a block's height. The ground has nodes only at its corners and on
-        its joints.
+        Number of parts of half a block along the course, and of a block's height. The ground has nodes only at its
+        corners and on its joints.
     """
     blocks, joints = scene.blocks, scene.joints
     along, length = _edges(blocks)
-    # On a joint, parts have the smaller of the lengths that its two blocks require.
+    # The target length of parts on a joint is the smaller one of its two blocks.
     run = joints.ends[:, 1] - joints.ends[:, 0]
     wanted = [np.where(scene.wall[block], _target(scene, cells, block, run), np.inf) for block in joints.block.T]
     divisions = _parts(joints.length, np.minimum(*wanted))
@@ -95,10 +95,10 @@ def outlines(scene: Scene, cells: int) -> NodeOutlines:
 
 
 def _turned(points: Array, corner: Mask, first: Indices, divisions: Indices, start: Indices) -> NodeOutlines:
-    """Rotate outlines to begin at the corresponding corner of each block, however it was drawn."""
+    """Renumber the nodes of each outline to begin at the lower left corner, in whatever order the block was drawn."""
     count = np.diff(first)
     block = np.repeat(np.arange(len(count)), count)
-    # No side of a lattice is perpendicular to this direction, so rounding errors do not decide.
+    # No side of a usual block is perpendicular to (0.3, 1), so rounding errors do not decide.
     height = np.where(corner, points @ [0.3, 1.0], np.inf)
     lowest = np.lexsort((height, block))[first[:-1]]
 
@@ -135,7 +135,7 @@ def _edges(blocks: Blocks) -> tuple[Array, Array]:
 
 
 def _reach(blocks: Blocks, joints: Joints) -> tuple[Indices, Array]:
-    """Edge of each side of each joint ``(2 nj,)``, a before b, and where along it that side lies ``(2 nj, 2)`` [m].
+    """Edge of each side of each joint ``(2 nj,)``, a before b, and the side's range along that edge ``(2 nj, 2)`` [m].
 
     An end within the contact tolerance of the edge's end is moved to it.
     """

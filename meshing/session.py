@@ -1,4 +1,4 @@
-"""A gmsh session without output that is always closed."""
+"""A silent gmsh session that is closed even after an error."""
 
 import signal
 import threading
@@ -16,8 +16,8 @@ def gmsh_session() -> Iterator[Any]:
     Raises
     ------
     SceneError
-        If the libraries that gmsh needs are missing, or if the caller has a session of its own open, which would end
-        with this one.
+        If the libraries that gmsh needs are missing, or if the caller has a gmsh session open, which would be closed
+        together with this one.
     """
     try:
         import gmsh
@@ -26,7 +26,7 @@ def gmsh_session() -> Iterator[Any]:
         raise SceneError("gmsh", remedy) from error
     if gmsh.isInitialized():
         raise SceneError("gmsh", "has a session open; call gmsh.finalize() before meshing")
-    # Not interruptible, or gmsh would take Ctrl-C from Python for good. It still takes SIGTERM, which is restored.
+    # Not interruptible, or gmsh would take Ctrl-C from Python for good. The replaced SIGTERM handler is restored.
     listener = signal.getsignal(signal.SIGTERM)
     gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False, interruptible=False)
     if threading.current_thread() is threading.main_thread() and listener is not None:

@@ -16,13 +16,13 @@ from .outline import NodeOutlines
 from .session import gmsh_session
 
 CONGRUENCE_TOLERANCE = 1e-9
-"""Tolerance between the nodes of congruent outlines, as a fraction of the smallest block."""
+"""Difference up to which nodes of congruent outlines coincide, as a fraction of the smallest block's size."""
 
 TRIANGLE = 2
 """gmsh's number for a triangle of three nodes."""
 
 GRID_TOLERANCE = 1e-3
-"""Largest deviation of a grid's sides from a parallelogram, as a fraction of its shortest part."""
+"""Largest deviation of a grid's sides from a parallelogram, as a fraction of the shortest part of its outline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ def _add_surface(gmsh: Any, points: Array, corner: Mask) -> tuple[int, list[int]
 
 
 def _is_grid(points: Array, corner: Mask) -> bool:
-    """Whether opposite sides of a four-cornered ring carry the same nodes, so that straight lines join them."""
+    """Whether opposite sides of a four-cornered ring have the same nodes, so that straight lines can connect them."""
     corners = np.flatnonzero(corner)
     if len(corners) != 4:
         return False

@@ -12,7 +12,7 @@ from contextlib import suppress
 from runningbond.own_packages import prefer_to_files
 
 MOMENT = 0.02
-"""Seconds after which a callback has returned."""
+"""Time after which a callback has returned [s]."""
 
 
 def main() -> None:
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def _open_streams() -> None:
-    """Open streams that were closed when the program was started, to the null device.
+    """Connect streams that were closed when the program was started to the null device.
 
     Otherwise standard error would go to standard output, and files would be opened under the descriptors of both.
     """

@@ -42,7 +42,7 @@ def hidden_package(module: str) -> str | None:
 
 
 def _taken_instead() -> dict[str, Path]:
-    """Files and folders that would be imported in place of packages, by the names of these."""
+    """Files and folders that would be imported in place of packages, by the packages' names."""
     found = {name: _place(name) for name in PACKAGES}
     return {name: place for name, place in found.items() if place is not None and HOUSE not in place.parents}
 

@@ -90,7 +90,7 @@ class Result:
 
     @cached_property
     def joints(self) -> Table:
-        """Joint points: two per joint, or all integration points of joints that crush or close.
+        """Joint points: two per joint, or all points along joints if any joint softens, crushes or closes.
 
         ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
         tension positive, and ``opening`` and ``slip`` [m] of the mechanism. NaN where the model gives no value.

@@ -53,7 +53,7 @@ def sweep(
     displacements, distance
         Small or finite displacements, and the distance to which live loads push walls at finite ones [m].
     folder
-        Folder of the outcomes; a sweep with the same folder computes only those that are missing. None keeps nothing.
+        Folder of the outcomes; a sweep with the same folder computes only those that are missing. None saves nothing.
     jobs
         Number of processes; −1 is one per core.
 

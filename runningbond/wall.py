@@ -33,7 +33,7 @@ TABLES = {
     ),
     "load": ("gravity", "live", "dead", "history"),
 }
-"""Keys of a scene file's tables that `Wall.running_bond` and `Wall.courses` take as keywords of their own."""
+"""Keys of a scene file's tables that the constructors of `Wall` take as separate keywords."""
 
 TABLE_OF = {key: table for table, keys in TABLES.items() for key in keys}
 """The table of each of them."""
@@ -116,8 +116,8 @@ class Wall:
             [kg/m³], ``young`` [Pa], ``friction``, and ``normal_stiffness`` and ``shear_stiffness`` [Pa/m] or
             ``mortar``); those of ``[wall]`` by ``first_course``, ``ends``, ``opening`` (a list of tables) and
             ``course_heights`` (in place of `height` and `block_height`); whole tables and top-level keys
-            (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that has no further keys by its
-            kind alone (``support="corners"``). Defaults: gravity 9.81 m/s², the ground as support, a lateral live
+            (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load without further keys by its
+            kind (``support="corners"``). Defaults: gravity 9.81 m/s², the ground as support, a lateral live
             load.
 
         Examples
@@ -318,14 +318,14 @@ class Wall:
         displacements, distance
             Small or finite displacements, and the distance to which live loads push a wall at finite ones [m].
         folder
-            Folder in which outcomes are kept and found again; None keeps nothing.
+            Folder in which outcomes are saved and found again; None saves nothing.
         jobs
             Number of processes; −1 is one per core.
 
         Raises
         ------
         SceneError
-            If the model follows no load path or the number of draws is not positive; and as in `run`.
+            If the model follows no load path or `number` is not from 2 to 10 000; and as in `run`.
         """
         from .campaigns import ctrl_c_passed_on
         from .draws import Sampling
@@ -339,7 +339,7 @@ class Wall:
             return sampling.run(tolerance, None if folder is None else path_of("folder", folder), jobs)
 
     def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "DrawnResponse":
-        """Follow the wall through the motion of its ground, ``load.history``.
+        """Compute the response of the wall to its ground motion, ``load.history``.
 
         Parameters
         ----------
@@ -348,7 +348,7 @@ class Wall:
         scale
             Factor on the record, λ.
         settings
-            ``points``, which are followed instead of the upper corners (m, ``(k, 2)``), and ``after``, the time for
+            ``points`` ``(k, 2)`` [m], which are followed instead of the upper corners, and ``after``, the time for
             which the wall is followed after a block has fallen [s].
         """
         from .models import respond
@@ -522,7 +522,7 @@ def _merged(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> d
         if numbered and isinstance(old.get(numbered[1]), Mapping):
             only = _full_name(name, numbered[1])
             raise SceneError(full_name, f"is no entry of a list: {only} is one table, whose keys are {only}.…", value)
-        if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material of that name
+        if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material named kind
             if not isinstance(before, list):
                 merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, full_name)
             elif value and all(isinstance(number, int) for number in value):

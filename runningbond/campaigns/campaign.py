@@ -68,7 +68,7 @@ def run_campaign(
     chosen = [find_model(model, "models") for model in models or MODELS]
     check_tolerance(tolerance)
     largest_first = sorted(scenes, key=lambda name: -len(scenes[name].blocks))
-    # Expensive models are last in the registry. They start first, so that no process works alone in the end.
+    # Expensive models are last in the registry. They start first, so that no single process works on alone in the end.
     tasks = [Task(name, scenes[name], model, tolerance) for model in reversed(chosen) for name in largest_first]
     return run_tasks(tasks, folder=folder, jobs=jobs, cluster=cluster, fresh=fresh, progress=progress)
 
@@ -99,7 +99,7 @@ def run_tasks(
     Raises
     ------
     SceneError
-        For an invalid number of processes.
+        For an invalid number of processes, or a cluster that is not there or has no worker.
     Interrupted
         On Ctrl-C, or if the folder cannot be written or the cluster is lost, with the results so far. Running the same
         tasks again resumes from there.

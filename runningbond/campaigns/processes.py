@@ -55,7 +55,7 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
                 del left[answer.cell]
                 yield answer
     except TerminatedWorkerError:
-        # A process was killed by an unknown task: the remaining tasks run one by one, the cheapest first.
+        # A process was killed, it is unknown in which task: the remaining tasks run one by one, the cheapest first.
         for task in reversed(left.values()):
             try:
                 with _processes(2, 1):

@@ -61,7 +61,7 @@ class Task:
             with (
                 _interruptions_kept(),
                 _ONE_AT_A_TIME,
-            ):  # a lock for workers with threads: gmsh and linear algebra libraries exist once per process
+            ):  # a lock for workers with threads, which share one gmsh and one linear algebra library
                 return Answer(self.cell, self._outcome(), key=key)
         except SceneError as reason:
             return Answer(self.cell, None, str(reason).removeprefix(f"model {self.model.name}: "), key)
@@ -85,7 +85,7 @@ class Task:
 
 @contextmanager
 def _interruptions_kept() -> Iterator[None]:
-    """Raise KeyboardInterrupt in the end if an interruption only made the model return what it had found so far."""
+    """Raise KeyboardInterrupt at the end if an interruption only made the model return what it had found so far."""
     before = {number: signal.getsignal(number) for number in INTERRUPTIONS}
     heard, seen = {number: each for number, each in before.items() if callable(each)}, list[int]()
     if not heard or threading.current_thread() is not threading.main_thread():

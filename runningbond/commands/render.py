@@ -24,7 +24,7 @@ def render(
 ) -> int:
     """Draw the contents of a result folder: its collapse mechanism, and the last moment and a film of a time series.
 
-    The mechanism is drawn in 2D, also as vector graphics, and by PyVista, which also draws the moments.
+    The mechanism is drawn by matplotlib, also as vector graphics, and by PyVista, which also draws the moments.
 
     Parameters
     ----------

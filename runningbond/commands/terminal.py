@@ -29,7 +29,7 @@ DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 """Exit codes of every command."""
 
 LONG_RUN = 30.0
-"""Expected seconds from which on they are printed before a run."""
+"""Expected time of a run [s] from which on it is printed before the run."""
 
 PATIENCE, REFRESH = 2.0, 0.25
 """Seconds until the progress line of a computation first appears, and between two updates."""
@@ -116,7 +116,7 @@ def print_cost(model: Model, scene: Scene, tolerance: float) -> None:
 
 @contextmanager
 def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
-    """Show a progress bar with the last case, the number of cases and the time; call what it yields after each case.
+    """Show a progress bar with the last case, the number of cases and the time; yields the function to call after each.
 
     If standard error is no terminal, lines are printed at intervals instead.
     """

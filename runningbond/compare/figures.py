@@ -207,7 +207,7 @@ def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:
 
 
 def _sampled(curve: Array) -> Array:
-    """Subdivide the segments of a curve and cut off its beginning, below `CURVE_START` of its peak load."""
+    """Subdivide the segments of a curve; cut off its start, below `CURVE_START` of its peak or without displacement."""
     if len(curve) < 2:
         return curve[:0]
     at = np.arange(len(curve))

@@ -42,7 +42,7 @@ CLOSING = ("cost", "Cost"), ("provenance", "What was run")
 
 
 class Cell(str):
-    """A table cell: its text, the number to sort by, the colour for its deviation from a median, and its link."""
+    """A table cell: its text, a number to sort by, the opacity of its colour (negative below a median), its link."""
 
     value: float | None = None
     heat = 0.0

@@ -31,7 +31,7 @@ class Comparison:
     published: Mapping[str, PublishedCase] = field(default_factory=dict)
 
     def groups(self) -> dict[str, list[str]]:
-        """Names of scenes by table title: one table per source; own scenes with λ and with loads in newtons apart."""
+        """Names of scenes by table title: one table per source, for own scenes one with λ and one with newtons."""
         groups: dict[str, list[str]] = {}
         for name, scene in self.scenes.items():
             own = f"{OWN}: load [N]" if is_force(scene) else OWN
@@ -133,7 +133,7 @@ def answer(outcome: Outcome) -> str:
 
 
 def bracket(outcome: Outcome) -> str:
-    """Bracket of an outcome for tables, as one number if narrower than `ONE_NUMBER`; empty if there is none."""
+    """Bracket of an outcome for tables, as one number if not wider than `ONE_NUMBER`; empty if there is none."""
     lower, upper, multiplier = outcome.lower, outcome.upper, outcome.multiplier
     if lower is not None and upper is not None and upper - lower > ONE_NUMBER * abs(upper):
         return f"{number(lower)} – {number(upper)}"

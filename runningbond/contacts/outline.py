@@ -11,9 +11,9 @@ from .reentrant import ConvexParts, RunOn
 from .rigid_sides import Corners, Placed, place_outline
 
 MARGIN = 0.02
-"""Least margin of contact detection, relative to the size of the smallest block (root of its area).
+"""Least distance up to which sides count as near, relative to the size of the smallest block (root of its area).
 
-It affects run time, not accuracy: a wider margin means more pairs to evaluate in every step, but fewer searches.
+It affects run time, not accuracy: a larger one means more pairs to evaluate in every time step, but fewer searches.
 """
 
 FLAT = 0.1
@@ -23,7 +23,7 @@ FLAT = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Blocks with rounded corners: arcs that touch the two sides at a corner an inset away from the corner.
+    """Blocks with rounded corners: each corner is an arc that touches its two sides an inset away from the corner.
 
     Sides have the numbers of the corners that they start from. After the real corners come the virtual ends of sides
     that are extended behind re-entrant corners (`reentrant`): corners from which no side starts.
@@ -53,7 +53,7 @@ class Outline:
         Raises
         ------
         SceneError
-            If the insets at both ends of a side are longer than the side.
+            If the insets at the two ends of a side are together longer than the side.
         """
         blocks = scene.blocks
         start, after = blocks.vertices, blocks.successor
@@ -84,7 +84,7 @@ class Outline:
 
     @property
     def margin(self) -> float:
-        """Margin of contact detection for blocks that barely move [m]."""
+        """Distance up to which sides of blocks that barely move count as near [m]."""
         return float(MARGIN * np.sqrt(self.blocks.area.min()))
 
     @cached_property

@@ -71,8 +71,8 @@ class RunOn(NamedTuple):
 def _way_through(polygon: Array, corner: int, along: Array, tolerance: float) -> float:
     """Distance [m] from a re-entrant corner of a polygon ``(n, 2)``, along a unit vector, to the outline again.
 
-    Another corner within the tolerance [m] of this line counts as met. Otherwise sides in line with each other, as on
-    both sides of a step, would by rounding be extended beneath one another.
+    Another corner within the tolerance [m] of this line counts as met. Otherwise rounding would extend sides in line
+    with each other, as on both sides of a step, beneath one another.
     """
     n, reach = len(polygon), polygon - polygon[corner]
     ahead, off = reach @ along, reach @ [-along[1], along[0]]
@@ -115,7 +115,7 @@ def _halves(ring: Array, reentrant: Mask) -> tuple[Indices, Indices]:
     ):
         left += turns_right(at - before, after - at)
     best = others[np.lexsort([np.hypot(*(there - here).T), left])].tolist()
-    # The cut must lie inside all along: if it touched another corner, a part would touch itself.
+    # The whole cut must lie inside: if it touched another corner, a part would touch itself.
     seen = (shapely.relate_pattern(whole, shapely.LineString(ring[[corner, other]]), "1**F**FF*") for other in best)
     low, high = sorted((corner, next(compress(best, seen))))
     return np.arange(low, high + 1), np.concatenate([np.arange(high, n), np.arange(low + 1)])

@@ -10,9 +10,9 @@ t, and the tilt φ of b against a,
     arc on arc:     opening |c_v − c_w| − r_v − r_w,         slip r_v ∠(n_e, n) + r_w ∠(n_f, n),  n along the centres
 
 The three cases join continuously, and so does their friction when a corner leaves one block's side and its own side
-slides on over another one's. Only at sharp corners that lie on each other, penetrating by δ, does the slip jump, by
-δ sin φ; the jump is shifted out of the history (`reframe_sharp`). The rates of opening and slip are those of the two
-blocks at the contact point: contact forces are work-conjugate to the jumps, and keep linear and angular momentum.
+slides on over another one's. Only if sharp corners lie on each other, penetrating by δ, the slip changes suddenly, by
+δ sin φ; `reframe_sharp` adds this to the history, so that it has no effect. The rates of opening and slip are those of
+the two blocks at the contact point: contact forces are work-conjugate to them, and keep linear and angular momentum.
 """
 
 import math
@@ -74,7 +74,7 @@ class RigidSides(NamedTuple):
 def turn(motion: Array, cosine: Array, sine: Array) -> None:
     """Write cosines and sines ``(nb,)`` of the rotations in a motion ``(3 nb,)``, accurate to rounding.
 
-    This replaces the library functions, so that the loop is vectorised.
+    This replaces the library functions, so that the loop runs in vector registers.
     """
     for i in range(cosine.size):
         spin = motion[3 * i + 2]
@@ -123,8 +123,8 @@ def sharp_opening(away: float, beyond: float) -> float:
 
     If the corner is deeper than its distance from that end, the penetration decreases again, to zero at twice this
     distance: the corner emerges at the end, and belongs to the side round the end. Otherwise a block that slides onto
-    the next block of its course would get stuck in that block's flank, deeper in by the closure of the joint below.
-    The opening changes by up to √5 times the motion of the corner. The contact force is turned accordingly
+    the next block of its course would get stuck at that block's flank, which it overlaps by the closure of the joint
+    below. The opening changes by up to √5 times the motion of the corner. The contact force is turned accordingly
     (`turn_out`); otherwise blocks that hit each other's edges would be thrown off with energy from nowhere.
     """
     return away if away > beyond else 2.0 * beyond - away

@@ -16,7 +16,7 @@ FASTEST_OPENING = math.sqrt(5)
 """Largest change of an opening per distance that the corner moves (`sharp_opening`)."""
 
 CHECKED_DEPTH = 0.1
-"""Depth of an end, in margins of the outline, above which it is checked that its blocks overlap as deep."""
+"""Depth of an end, relative to `Outline.margin`, above which it is checked that its blocks overlap half as deep."""
 
 SAME_ANGLE = 1e-9
 """Difference of two angles that is rounding [rad]."""
@@ -51,7 +51,7 @@ class Contacts:
 
     @cached_property
     def pairs(self) -> Indices:
-        """The two ends of each pair of facing sides ``(n, 2)``, the low one first; twice the same end if alone."""
+        """The two ends of each pair of facing sides ``(n, 2)``, the low one first; a single end twice."""
         sides = side_pair(*self.ends[:, 4:].astype(np.int64).T)
         _, first, pair = np.unique(sides, return_index=True, return_inverse=True)
         ends, row = np.full((len(first), 2), -1), np.arange(len(self))
@@ -66,7 +66,7 @@ class Contacts:
     def points(self, number: int = 0) -> tuple[Indices, Indices]:
         """Keys of all ends, or of `number` points along each pair (`along`), and the end at each point or −1.
 
-        All points of an end without partner are that end; points between two ends are neither.
+        All points of a single end are at that end; points between two ends are at neither.
         """
         if not number:
             return self.key, np.arange(len(self))
@@ -119,7 +119,7 @@ class Contacts:
 
 
 def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
-    """Find facing sides, both ends each, that are near at either end after a motion ``(3 nb,)``.
+    """Find the ends of facing sides that are near at one end at least after a motion ``(3 nb,)``.
 
     An end is near if its opening is within √5 times the margin [m]. Sides that are left out cannot touch before some
     block has moved by half the margin.
@@ -153,17 +153,17 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     near[near] = ~_past_each_other(outline, both.chosen(near), opening[near], motion)
     angle, lean = swing + spin[owner], np.abs(np.tile(tilt + turned, 2))
     near &= _with_the_side_that_faces(outline, both, angle, lean, motion)
-    # A distant end is kept only together with a close end of its pair. If that is dropped, so is the distant one: as
+    # A distant end is kept only with the close end of its pair. If that is dropped, so is the distant one: while
     # sides turn across each other, it would jump from far away to deep inside.
     there = near & close
     return both.chosen(near & np.tile(there[:n] | there[n:], 2))
 
 
 def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array, lean: Array, motion: Array) -> Mask:
-    """Mask of ends whose corner touches with that one of its two sides which faces the other block's side.
+    """Mask of ends where the side of the corner is the one of its two sides that faces the other block's side.
 
     Normals of sides are at angles ``(nv,)`` [rad], and the sides of each end lean by ``(n,)`` [rad] on each other. Half
-    of a corner's arc belongs to each of its sides. A flat corner touches with both sides, each of which represents its
+    of a corner's arc belongs to each of its sides. A flat corner rests with both sides, each of which represents its
     own area. An end is also kept if its other corner is about to come to rest on the side of the first.
     """
     corner, side = resting(outline, contacts, motion)
@@ -172,8 +172,8 @@ def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array
 
     def faces(corner: Indices, side: Indices) -> Mask:
         exterior, own = outline.exterior[corner], outline.side[corner]
-        # Angle from the corner's bisector to the side, computed alike for both sides: at 45° rounding might else let
-        # neither face it.
+        # Angle from the corner's bisector to the side, computed alike for both sides: otherwise rounding might find
+        # at 45° that neither faces it.
         off = np.mod(angle[own] - exterior / 2 - angle[side], 2 * np.pi) - np.pi
         at_start = (contacts.inwards < 0) == (side != e)
         return np.asarray(np.where(at_start, off <= 0, off > 0) & (lean <= exterior / 2 + SAME_ANGLE))
@@ -185,10 +185,10 @@ def _with_the_side_that_faces(outline: Outline, contacts: Contacts, angle: Array
 
 
 def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:
-    """Mask of ends ``(n,)`` deeper than the convex parts of their blocks overlap along the normal of any side.
+    """Mask ``(n,)`` of ends more than twice as deep as convex parts of their blocks overlap along some side's normal.
 
     There a block has passed the end of the other block's side, and lies below this side without having penetrated it.
-    A sharp corner would be treated as emerging at this end (`sharp_opening`).
+    A sharp corner would be treated as emerging at this end, from up to twice the overlap (`sharp_opening`).
     """
     parts, found, placed = outline.parts, np.zeros(len(contacts), dtype=bool), outline.placed(motion)
     arcs, normals = placed.arcs, placed.arcs[:, 2:]
@@ -197,7 +197,7 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     normal = np.where((side == f)[:, None], normals[f], -normals[e])
     depth = outline.radius[v] + outline.radius[w] - (apart * normal).sum(axis=1)
     along = np.abs(apart[:, 1] * normal[:, 0] - apart[:, 0] * normal[:, 1])
-    # Corners that have not penetrated and lie beyond the end of the side may still come in, except far below the side.
+    # Corners beyond the end of the side that have not penetrated may still do so, except those far below the side.
     beside = (opening >= 0) & (along >= outline.straight[side])
     # Until the next search blocks move by a margin against each other: 2 · overlap − depth grows by √5 margins at most.
     deeper = depth - FASTEST_OPENING * contacts.margin

@@ -1,4 +1,4 @@
-"""Draws: one model on walls that differ only within what is unknown about them, and statistics of the outcomes."""
+"""Draws: one model on walls that differ only in what is not known exactly, and statistics of the outcomes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ class Draws:
     def borne(self) -> Array:
         """λ of all draws that are decided, ascending, ``(n,)``.
 
-        It is 0 for a draw that falls under its dead load alone, and infinite for a draw that carries every load.
+        It is 0 for a draw that falls under its dead load, and infinite for a draw that carries every load.
         """
         none, all_of_them = (self._count(status) for status in ("infeasible", "unbounded"))
         return np.concatenate([np.zeros(none), self.multipliers, np.full(all_of_them, np.inf)])
@@ -160,7 +160,7 @@ def _told(load: float | None) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Sampling:
-    """A model that follows a loading path, to be run on a wall and on random draws of it.
+    """A model that follows a load path, to be run on a wall and on random draws of it.
 
     Parameters
     ----------
@@ -170,12 +170,12 @@ class Sampling:
         Number of draws.
     scatter
         What varies: ``bits``, the last bits of densities and frictions; or ``size=0.01,friction=0.05``, the blocks'
-        sizes within a relative tolerance, each joint's friction by the standard deviation of its logarithm.
+        sizes within a relative tolerance, each joint's friction with a standard deviation of its logarithm.
 
     Raises
     ------
     SceneError
-        For an invalid number of draws or scatter, for a model that follows no loading path or does not apply to the
+        For an invalid number of draws or scatter, for a model that follows no load path or does not apply to the
         wall, or for a scatter that the wall does not allow.
     """
 

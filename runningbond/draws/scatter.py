@@ -17,7 +17,7 @@ BITS = 1e-12
 """Relative change of densities and frictions that affects only their last bits."""
 
 LARGEST_SHIFT = 0.45
-"""Largest shift of a line, relative to joints that end at it: two that approach each other leave a tenth of a joint."""
+"""Largest shift of a line, per length of joints that end at it: two that approach each other leave a tenth of it."""
 
 KEY = "scatter"
 RANGES = {"size": Range(above=0.0, most=0.1), "friction": Range(above=0.0, most=0.5)}
@@ -30,7 +30,7 @@ class Scatter:
     Parameters
     ----------
     size
-        Relative tolerance of block widths and heights: lines of joints shift by up to half of it either way.
+        Tolerance of block widths and heights, relative to the smallest: lines of joints shift by half of it at most.
     friction
         Standard deviation of the logarithm of each joint's friction.
     """
@@ -71,7 +71,7 @@ class Scatter:
         Raises
         ------
         SceneError
-            If sizes are to vary and blocks have sides that are neither horizontal nor vertical.
+            If sizes are to vary and sides are neither horizontal nor vertical, or joints do not end at corners.
         """
         random = np.random.default_rng([SEED, number])
         blocks = tuple(replace(each, density=each.density * _bit(random)) for each in scene.block_materials)
@@ -110,7 +110,7 @@ def _resized(scene: Scene, size: float, random: np.random.Generator) -> Scene:
     """A wall with randomly shifted lines of joints; a line is straight and as long as sides of blocks continue it.
 
     The outer sides of the wall stay, and so do a beam, the ground and lines that continue them. Shifts are reduced if a
-    joint between two lines would vanish. Loads, pins and bars at points stay on their blocks, and move with them.
+    joint between two lines would vanish. Point loads, pins and ties stay on their blocks, and move with them.
     """
     blocks, corners, ends = scene.blocks, scene.blocks.vertices.copy(), scene.joints.ends.copy()
     place, place_of_end = np.split(_places(scene), [len(corners)])
@@ -138,7 +138,7 @@ def _resized(scene: Scene, size: float, random: np.random.Generator) -> Scene:
 
 
 def _carried(scene: Scene, drawn: Scene) -> Scene:
-    """The drawn wall, with the loads, pins and bars of the original scene moved along with their blocks."""
+    """The drawn wall, with the loads, pins and ties of the original scene moved along with their blocks."""
     (low, high), (drawn_low, drawn_high) = scene.blocks.boxes, drawn.blocks.boxes
     shift, growth = drawn_low - low, (drawn_high - drawn_low) / (high - low) - 1.0
 

@@ -28,17 +28,17 @@ Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 """Buffers: motion and load ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
 
 Watch: TypeAlias = tuple[int, float, Array]
-"""Steps taken before; energy [J] of the state except the work of the loads that are constant now, inf if energy is not
-checked; the largest energy supplied so far ``(1,)`` [J], updated in place.
+"""Steps taken before; energy [J] supplied to the state except the work of the loads that are constant now, inf if
+energy is not checked; the largest energy supplied so far ``(1,)`` [J], updated in place.
 
-These are plain tuples: unpacking a named one costs each kernel call a tenth of the steps of a small wall.
+These are plain tuples: unpacking a named one would add a tenth to the time of each kernel call for a small wall.
 """
 
 Scales: TypeAlias = tuple[float, float, float]
 """Time step [s], local damping α, and the ratio of the joints' viscosity to their stiffness, in time steps."""
 
 Control: TypeAlias = Literal["held", "driven", "carried"]
-"""What is prescribed: only a load, in addition the power of the live load, or the velocity of the held modes."""
+"""What is prescribed: the loads; the dead load and the power of the live load; or the dead load and held velocities."""
 
 CONTROLS: tuple[Control, ...] = get_args(Control)
 """Names of the controls, in the order of the numbers `HELD`, `DRIVEN` and `CARRIED`."""
@@ -57,11 +57,11 @@ CERTAIN_SHARE = 0.05
 Of the work W of the loads, central differences turn E into kinetic and elastic energy and dissipate D, with
 W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E because velocities are half a step behind. So a stable run
 has W ≥ D + (1 − Δt / Δt_critical) E; this fraction is safe up to 0.95 of the critical step. When an oscillation returns
-to its start, W passes through zero, but the velocity half a step before does not: W is the largest so far.
+to its start, W passes through zero, but the velocity half a step before does not: so the largest W so far counts.
 """
 
 LARGEST_DISSIPATION = 2.0
-"""Ratio of dissipated to supplied energy above which a run is unstable: exactly 1, but D is summed up step by step."""
+"""Ratio of dissipated to supplied energy above which a run is unstable: 1 in theory, but D is summed step by step."""
 
 
 @kernel
@@ -85,7 +85,7 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
 
 @kernel
 def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most: Array) -> bool:
-    """Whether kinetic, elastic and dissipated energy [J] do not exceed the energy supplied; False if any is NaN.
+    """Whether kinetic, elastic and dissipated energy are within the energy supplied [J]; False if any is NaN.
 
     The supply is `given` and the work of a load that was constant; `most` keeps its largest value. The work of the
     joints is left out: at high frequencies the work of their viscosity is overestimated, and in a wall that vibrates

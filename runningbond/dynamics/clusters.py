@@ -1,6 +1,6 @@
 """Bodies in clusters, with more inertia against relative motion than against common motion (selective mass scaling).
 
-A cluster has the rigid motion R that has the linear and angular momentum of its bodies; the remainder of the bodies'
+A cluster has the rigid motion with the linear and angular momentum of its bodies; the remainder of the bodies'
 rigid motions carries no momentum. With the projection P of bodies' motions onto those of their clusters, and their
 masses M, the remainder has 1 + β times the physical inertia (`olovsson2005`):
 
@@ -23,7 +23,7 @@ class Clusters(NamedTuple):
     freedom: Unsigned  # (n, 3) indices in the motion of the translations and the rotation of each body in a cluster
     cluster: Unsigned  # (n,) its cluster
     arm: Array  # (n, 2) its centroid relative to that of the cluster [m]
-    # (n, 3) its fraction of the cluster's mass, mass over the cluster's inertia [1/m²], fraction of that inertia
+    # (n, 3) its fraction of the cluster's mass, its mass over the cluster's moment of inertia J [1/m²], fraction of J
     part: Array
     more: float = 0.0  # β
 

@@ -10,7 +10,7 @@ from .run import Observer, Run, no_observer
 from .state import State
 
 CALM = 3
-"""Consecutive checks at which a wall at rest must be balanced: a moving wall may pass through balance."""
+"""Consecutive checks at which a wall must be balanced to be at rest: a moving wall may pass through balance."""
 
 U_CRIT = 0.05
 """Displacement beyond which a wall that does not slow down has collapsed, in block sizes (`Scene.block_sizes`).
@@ -20,7 +20,7 @@ slowly enough it does not.
 """
 
 DRAGGED = 50_000
-"""Steps after which a wall that neither rests, falls nor moves steadily gets a damping that does not drag on drift.
+"""Steps after which damping no longer slows down drift, if a wall neither rests nor falls nor moves steadily.
 
 Contacts that slip without end may vibrate for that long, and local damping slows down what drifts while it vibrates.
 Walls that move steadily are left alone: combined damping dissipates more of a fall that vibrates.
@@ -40,7 +40,7 @@ class Criteria:
     rest: float = 1e-5  # unbalanced force, in the system's force units, below which the wall is at rest
     budget: int = 2_000_000  # steps after which the verdict is undecided
     interval: int = 200  # steps between two checks
-    dragged: float = DRAGGED  # steps after which damping no longer drags on drift (`DRAGGED`)
+    dragged: float = DRAGGED  # steps after which damping no longer slows down drift (`DRAGGED`)
 
 
 def settle(
@@ -68,8 +68,8 @@ def hold_load(
     """Hold a load until the wall rests or falls; return also the motion ``(nd,)`` half-way to the collapse, or None.
 
     The wall rests if the unbalanced force is below the threshold at `CALM` consecutive checks. It falls if it moves far
-    without slowing down (`CollapseDetector`); a wall that slips and is stopped does not. A wall under a load that is
-    applied at once (`sudden`) may deform elastically first.
+    without slowing down (`CollapseDetector`); a wall that slips and stops does not. Under a load applied at once
+    (`sudden`) it must move farther to fall, because it may deform elastically first.
 
     Raises
     ------
@@ -97,10 +97,10 @@ def hold_load(
 
 
 class CollapseDetector:
-    """Detector of collapse: the wall has moved by one unit, and no slower in the second half than before.
+    """Detector of collapse: the wall has moved by one unit, and no slower in the second half than in the first.
 
-    A distance of `EARLY` is enough if the same held at half of it. A motion that does slow down is a collapse at the
-    last of the marks, ``2**FARTHEST`` units.
+    A distance of `EARLY` units is enough if the same held at half of it. A motion that does slow down is a collapse at
+    the last of the marks, ``2**FARTHEST`` units.
 
     Parameters
     ----------
@@ -110,10 +110,10 @@ class CollapseDetector:
     """
 
     FARTHEST = 4
-    """Number of doublings of the unit after which a motion that does slow down still counts as a collapse."""
+    """Number of doublings of the unit after which even a motion that slows down counts as a collapse."""
 
     SLACK = 1.1
-    """Factor on the time per distance up to which nothing has slowed down: sliding contacts vary their speed."""
+    """Ratio of times per distance up to which a motion has not slowed down: the speed of sliding contacts varies."""
 
     EARLY = 0.5
     """Part of the unit, a power of two, after which a motion that never slowed down is a collapse.

@@ -25,10 +25,10 @@ from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
 FIRST_STEP = 0.05
-"""First load step: largest live force on a block over its weight (weightless: over the strongest joint's strength)."""
+"""First load step: largest ratio of live force to weight of a block (weightless: to the strength of a joint point)."""
 
 HALVINGS = 8
-"""Most halvings of the first step: still smaller loads could not be told apart from rest."""
+"""Most halvings of the first step: under even smaller loads the criterion of rest could not detect a motion."""
 
 LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 """Multiplier, in first steps, and displacement, in block sizes, beyond which the search for a collapse ends.
@@ -44,7 +44,7 @@ LARGEST_ELASTIC = 20.0
 """Displacement, in elastic displacements under a load proved too large, beyond which the search for a collapse ends."""
 
 DRAWN_OVERLAP = 0.02
-"""Overlap of joints in a mechanism, in largest displacements of a block, that is barely visible in a picture."""
+"""Overlap of joints in a drawn mechanism, relative to the largest displacement, that is barely visible."""
 
 BUDGET = 2_000_000
 """Time steps after which a load is left undecided."""
@@ -90,8 +90,8 @@ def collapse_by_steps(
     bound
         Multiplier that is proved too large, if there is one.
     gives
-        Largest displacement of a block [m] under a multiple of the live load while joints neither open nor slip, and
-        while the wall hangs on its ties, as far as it is known.
+        Largest displacement of a block [m] under a multiple of the live load while joints neither open nor slip, plus
+        that of a wall which hangs on its ties until they yield, as far as they are known.
     bears
         Whether joint forces balance the dead load, considering all cracks of the run; called if the wall falls under
         it.

@@ -15,7 +15,7 @@ SPEED_FACTOR = 2
 """Safety factor on the speed of bodies and on their accelerations by loads and ties, to predict how far they move."""
 
 STEPS_AHEAD = 128
-"""Time steps of the fastest body that the search distance covers at least: a search costs hundreds of steps."""
+"""Least time steps of the fastest body that the search distance covers: a search takes as long as hundreds of them."""
 
 OPENING_MARGIN = 1.1
 """Factor on the opening of unbroken joints in the search distance."""

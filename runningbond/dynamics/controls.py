@@ -20,7 +20,7 @@ class Pushover:
     """A wall pushed at a prescribed speed."""
 
     curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, interval by interval
-    peak: float  # largest multiplier of the curve
+    peak: float  # largest multiplier of the curve, without its soft start
     rate_error: float  # change of the peak when the speed was last halved; inf if it was never halved
     state: State  # the wall at the end
 

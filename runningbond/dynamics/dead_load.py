@@ -1,7 +1,7 @@
-"""Application of the dead load: at once; or slowly if that breaks joints or makes a wall fall that need not.
+"""Application of the dead load: at once, or slowly if joints break or the wall falls under the sudden load.
 
-Preloads of ties come with it. A beam that is held at its height from then on keeps its remaining thrust, and ties that
-have dragged blocks along have lost their preload: in both cases the load also comes slowly if joints have slid.
+Preloads of ties come with it. A beam that is held at its height from then on keeps whatever thrust there is, and ties
+that have dragged blocks along have lost their preload: in both cases the load also comes slowly if joints have slid.
 """
 
 from collections.abc import Callable
@@ -29,10 +29,10 @@ SLIP_WORK = 1e-3
 """Fraction of the work of dead load and preloads above which friction work is more than rounding: joints have slid."""
 
 TIGHTENINGS = 200
-"""Number of increments in which ties are tightened while the rest of the load comes on."""
+"""Number of increments in which ties are tightened while the remaining load grows."""
 
 GROWTH_TIMES = 4
-"""Duration of the rest of the load, in times that the wall takes to rest under the first part."""
+"""Time in which the remaining load grows, in multiples of that in which the wall rests under the first part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ def fall_under_dead_load(law: KernelLaw, bears: Callable[[], bool]) -> tuple[Lit
 
 
 def keeps_damage(run: Run) -> bool:
-    """Whether a suddenly applied load may damage or crush joints for good that a slowly applied one would not."""
+    """Whether a sudden load may permanently damage or crush joints that a slowly applied one would not."""
     law = run.interface.law.law
     return law.damage is not None or PLASTIC_CLOSURE in law.history
 

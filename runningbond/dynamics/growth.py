@@ -12,12 +12,12 @@ from .run import Run
 from .state import State
 
 FAST_FRACTION, FASTER = 1 / 3, 8
-"""Fraction of the proved bound up to which the load of a wall with weight grows faster, and how much faster."""
+"""Fraction of the proved bound up to which the load of a wall with weight grows faster, and factor on its rate."""
 
 SOFTENING_RATIO = 2.0
 """Displacement per load, relative to the smallest observed, above which the wall has begun to yield.
 
-Below that the load also grows faster: slips then still occur one after the other.
+Up to that ratio the load also grows faster: slips then still occur one after the other.
 """
 
 YIELD_DISPLACEMENT, LOOKS = 1.0, 8
@@ -50,7 +50,7 @@ class Growth:
     steps: int = 0  # steps taken
 
     def reach(self, trial: float, state: State, start: float, share: float) -> tuple[float, State]:
-        """Raise the multiplier in this share of the unhurried steps; the multiplier reached, and the state there."""
+        """Raise the multiplier in a share of `unhurried` steps; return the multiplier reached, and the state."""
         steps = self.unhurried * share
         if self.run.system.weightless:
             return self._in_parts(trial, state, start, steps, PAUSES * share)
@@ -64,7 +64,7 @@ class Growth:
         return None
 
     def up_to(self, stop: float, state: State, start: float, steps: float) -> tuple[float, State]:
-        """Raise the multiplier in so many steps, until the wall yields; the multiplier reached, and the state there."""
+        """Raise the multiplier in `steps`, or until the wall yields; return the multiplier reached, and the state."""
         begin, reached, self.passed = state.motion, start, []
         for look in range(1, LOOKS + 1):
             before, reached = reached, stop if look == LOOKS else start + (stop - start) * look / LOOKS
@@ -75,7 +75,7 @@ class Growth:
         return reached, state.copy()
 
     def _onward(self, state: State, start: float, stop: float, steps: int) -> State:
-        """The wall after the multiplier has grown: fast first, and again slowly if the wall yielded to that."""
+        """The wall after the multiplier has grown: fast, or, if the wall yielded, from the same start again slowly."""
         if stop <= self.far or (stop <= self.slow and self.softest < np.inf):
             grown, softness = self._grown(state, start, stop, max(1, round(steps / FASTER)))
             if stop <= self.far or softness <= SOFTENING_RATIO * self.softest:
@@ -94,7 +94,7 @@ class Growth:
         return grown, moved / (stop - start)
 
     def _in_parts(self, stop: float, state: State, start: float, steps: float, pauses: float) -> tuple[float, State]:
-        """Raise the multiplier of a wall without weight, with pauses, until the wall does not come to rest in one."""
+        """Raise the multiplier of a wall without weight, with pauses; stop at a pause in which it does not rest."""
         grown, parts, reached = state.copy(), max(1, round(pauses)), start
         for part in range(1, parts + 1):
             before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
@@ -105,7 +105,7 @@ class Growth:
         return reached, grown
 
     def _pauses(self, state: State, multiplier: float, motion: Array) -> bool:
-        """Hold a load, in place, until the wall is nearly at rest; False if it moves far or never rests."""
+        """Hold a load, in place, and return whether the wall nearly rests in time, without moving far from `motion`."""
         given = self.run.given(state)
         for _ in range(self.criteria.budget // PAUSE_INTERVAL):
             if self.run.unbalanced(state) < NEARLY_AT_REST:

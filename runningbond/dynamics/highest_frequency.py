@@ -21,7 +21,7 @@ STEPS = 60
 """Most Lanczos steps; the method converges from below to a thousandth, and stagnates at times on the way."""
 
 ROUNDING = 1e-9
-"""Relative to the largest frequency squared, residual length below which the rest of a vector is rounding."""
+"""Length of the next Lanczos vector, relative to the largest ω² so far, below which it is only rounding."""
 
 DIGITS = 6
 """Significant digits kept of the eigenvalue: the last ones differ from machine to machine."""

@@ -3,7 +3,7 @@
 Static equilibrium does not depend on the masses (`underwood1983`, `olovsson2005`), and the time step is limited by a
 single block on its joints, mostly by its rotation: the corners have a long lever arm. Each block is made so heavy, in
 each of its three motions separately, that none of them is faster than the median block is in its slowest motion. The
-slowest vibrations of a wall, which decide how soon it rests, are mainly of that motion, and stay nearly unchanged.
+slowest vibrations of a wall, which decide how soon it rests, consist mainly of that motion and change very little.
 
 Slips start waves, which such blocks keep longer: dashpots in the joints are four times as strong as elsewhere. With the
 usual ones panel-12 takes one branch or another if the loading rate changes by a tenth (docs/fem-study.md).

@@ -33,7 +33,7 @@ SUPPORT_WINDOW_STEPS = 25
 
 
 LOSS = 0.8
-"""Fraction of the largest force at which a wall has failed and its mechanism is drawn, once the force falls to it."""
+"""Fraction of the largest force: once the force has fallen to it the wall has failed, and its mechanism is drawn."""
 
 FINAL_PART = 0.1
 """Last part of a path, over which the force no longer changes if a mechanism has formed."""
@@ -42,7 +42,7 @@ UNCHANGED = 1e-6
 """Change of the share on a support that counts as none, in addition to the tolerance times its total change."""
 
 PATH_ROUNDING = 1e-9
-"""Difference of two displacements, relative to the path, that is only rounding."""
+"""Difference of two displacements, relative to the largest one, that is only rounding."""
 
 OVERSHOOT = 0.05
 """Displacement to the other side, relative to the largest one, up to which a path only returns to its start."""
@@ -119,7 +119,7 @@ class Lead:
     criteria: Criteria
     observe: Observer
     points: JointPoints  # joint points, in the order of `Run.at_joints`
-    most: float = np.inf  # force at which the wall is not pushed farther
+    most: float = np.inf  # force above which the wall is not pushed farther
 
     @property
     def answer(self) -> str:
@@ -415,7 +415,7 @@ def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0,
     tolerance
         Fraction of the force by which it may still grow; and of its total change by which a share may still change.
     settles
-        Whether supports settle. An elastic wall sheds load too: hardly any on a short path, and evenly along it.
+        Whether supports settle. An elastic wall sheds load too: almost none on a short path, and evenly along it.
     least
         Force below which growth need not be small.
     still

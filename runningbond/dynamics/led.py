@@ -26,13 +26,13 @@ from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
 LEAST_STEPS, REST_MULTIPLE, REST_MULTIPLE_FINITE = 20_000, 20, 2
-"""Fewest time steps of the longest leg in the first traverse if no rate is given, and the fewest in multiples of those
+"""Fewest time steps of the longest leg in the first traverse if no rate is given, and their least multiple of the steps
 to rest under the dead load: at small displacements, and at finite ones, whose paths are longer.
 """
 
 LOCKED = 20.0
-"""Live load, in dead loads (weightless: in strengths of the strongest joint), up to which a self-locking wall is
-pushed."""
+"""Largest ratio of live force to weight of a block (weightless: to the strength of the strongest joint point) up to
+which a self-locking wall is pushed."""
 
 UNACCOUNTED = 0.01
 """Fraction of the work of the loads that the energy ledger may miss before a run counts as failed."""

@@ -13,7 +13,7 @@ from .run import Observer, Run, no_observer
 from .state import State
 
 LOADING, LOADING_WEIGHTLESS = 24, 4
-"""Time in which the load grows by its first step, in times that the wall takes to rest under this step applied at once.
+"""Time in which the load grows by its first step, in multiples of the time to rest under this step applied at once.
 
 A wall that is loaded faster slips in several places at once where it would slip in one after the other, and therefore
 carries more, or less.
@@ -33,7 +33,7 @@ UNDECIDED_BUDGETS = 3
 """Number of budgets that may be spent on undecided loads anywhere before a search ends."""
 
 DOUBLED_BEYOND = 200
-"""Load, in first steps, above which each step doubles it: a wall that stands at ten weights is probably locked."""
+"""Load, in first steps, above which each step doubles it: a wall that stands at ten weights probably self-locks."""
 
 
 @dataclass(eq=False)
@@ -89,7 +89,7 @@ class UndecidedLoads:
         return min(self.loads) - (result.lower or 0.0), (result.upper or np.inf) - max(self.loads)
 
     def closed(self, result: LoadSteps, width: float) -> bool:
-        """Whether the bracket cannot become narrower than `width`, because of the undecided loads."""
+        """Whether undecided loads end the search: too many, or both sides at most a quarter of `width` wide."""
         most = MOST_UNDECIDED // 2 if result.upper is None else MOST_UNDECIDED
         return bool(self.loads) and (len(self.loads) >= most or max(self.sides(result)) <= width / 4)
 
@@ -131,8 +131,8 @@ def load_steps(
     farthest : float or (n,) float
         Displacement [m] of any body, or of each, since the rest under the dead load, beyond which the search ends.
     loading
-        Time in which the load grows by its first step, or by an eighth of the load if that is more, in times that the
-        wall takes to rest under the first step applied at once; by default `LOADING` or `LOADING_WEIGHTLESS`.
+        Time in which the load grows by its first step, or by an eighth of the load if that is more, in multiples of
+        the time to rest under the first step applied at once; by default `LOADING` or `LOADING_WEIGHTLESS`.
     bound
         Multiplier that is proved too large, if there is one: far below it the load grows faster (elsewhere only until
         the wall yields, `Growth`), and no load much larger is tried unless the wall carries it.
@@ -255,7 +255,7 @@ class _Search:
         return result.upper if wants_more else None
 
     def _sways(self) -> bool:
-        """Whether the wall moved half-way to a collapse between the rests at `tried_from` and at `lower`."""
+        """Whether the wall moved by half of `CollapseDetector.EARLY` between the rests at `tried_from` and `lower`."""
         result = self.result
         if result.lower is None or result.tried_from is None:
             return False

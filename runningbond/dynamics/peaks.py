@@ -1,7 +1,7 @@
 """The largest force along a path, from means over windows that are as short as the peak requires.
 
 A force fluctuates, and is measured by its mean over a part of the path. The longer the part, the lower the mean at a
-peak: if a wall snaps within a hundredth of a row little of the peak is left. Therefore means over shorter and shorter
+peak: if a wall snaps within a hundredth of a row, little of the peak is left. Therefore means over shorter and shorter
 windows are computed in parallel, and the longest windows are taken to which shorter ones add almost nothing.
 """
 
@@ -74,11 +74,11 @@ class Peaks:
                 peak.see(*self._means(some), state, row)
 
     def mean(self, windows: int) -> float:
-        """Mean force over the last windows of the row."""
+        """Mean force over the last `windows` windows of the row."""
         return self._means(windows)[0]
 
     def _means(self, windows: int) -> tuple[float, float]:
-        """Mean force and inertia over the last windows of the row."""
+        """Mean force and inertia over the last `windows` windows of the row."""
         steps = self._ends[-1] - self._ends[-1 - windows]
         force, inertia = ((self._sums[-1] - self._sums[-1 - windows]) / steps).tolist()
         return force, inertia

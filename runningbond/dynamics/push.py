@@ -24,10 +24,10 @@ MOST_ROWS = 4
 """Most rows of a push, relative to the number needed if no block moves farther than the control point."""
 
 MARGIN = 1.25
-"""Factor on how far blocks moved before the wall fell, to expect how far they move in the next, slower traverse."""
+"""Expected displacement of blocks before a fall, relative to the last traverse: in a slower one walls fall later."""
 
 LEAST_REACH = 0.5
-"""Least factor on the expected displacement per traverse: a push far too fast throws blocks off and seems to end."""
+"""Smallest ratio of expected displacements of two traverses: a much too fast push throws blocks off and ends early."""
 
 START_SPEED, SPEED_GROWTH, LARGEST_GAIN = 0.01, 1.05, 0.01
 """Fraction of the speed at which a push begins, factor by which it grows per row, and largest fraction gained per row.
@@ -45,13 +45,13 @@ WINDOWS = 4
 """Most windows of a row whose mean multipliers are used: all blocks are pushed, and the push fluctuates with them."""
 
 EARLY_PEAK = 0.01
-"""Fraction of the path before which the few short rows in which a push accelerates do not resolve a peak."""
+"""Fraction of the path within which only the few short rows, in which a push accelerates, show a peak."""
 
 RELAXATION_PART = 1e-6
 """Fraction of the distance by which a control point that stays in place moves because its springs relax."""
 
 STATIONARY_PART = 0.01
-"""Largest displacement of a control point that stays in place, relative to that of the blocks that move farthest."""
+"""Largest displacement of a control point that stays in place, relative to the path of the farthest-moving blocks."""
 
 ControlPoint: TypeAlias = tuple[Indices, Array, Array]
 """Blocks ``(n,)``, point and direction ``(2,)`` of a displacement, as in `Scene.control_point`."""
@@ -94,7 +94,7 @@ class Push(Lead):
 
     @property
     def goals(self) -> Array:
-        """Expected displacement of the blocks that move farthest."""
+        """Expected displacement of the blocks that move farthest [m]."""
         return np.array([self.distance if np.isinf(self.reach) else self.reach])
 
     def moved(self, state: State) -> float:
@@ -169,7 +169,7 @@ class Push(Lead):
         return lead
 
     def kept(self, traverses: list[Traverse]) -> Traverse:
-        """The last complete traverse, if there is one: the later ones begin more and more slowly."""
+        """The last complete traverse, if there is one: each traverse begins more slowly than the one before."""
         return traverses[-2] if len(traverses) > 1 else traverses[-1]
 
     def onward(self, curve: Array) -> Array:

@@ -27,7 +27,7 @@ LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
 
 MOVING, CALMING = 0.2, 0.8
-"""Local damping α of walls that move far, smaller because damping drags on them, or larger until they rest."""
+"""Damping α of walls that move far, small as it slows down drift; and large, until they rest or if it is combined."""
 
 Observer: TypeAlias = Callable[["Run", State, float], None]
 """Called now and then with a run, its state and the multiplier; changes none of them."""
@@ -39,7 +39,7 @@ def no_observer(run: "Run", state: State, multiplier: float) -> None:
 
 @dataclass(frozen=True)
 class Ledger:
-    """Energy balance of a run: where the work of the loads went [J]; the rest is the residual."""
+    """Energy balance of a run [J]: the work of the loads and where it went; the rest is the residual."""
 
     external: float
     kinetic: float
@@ -230,7 +230,7 @@ class Run:
             live = self._live()  # the live load rotates with the beam or with blocks
         more = None if control == "driven" else speed * steps if control == "held" else 0.0
         for piece in self._pieces(state, steps, load, more):
-            before = float(load.dot(state.motion))  # the @ operator takes twice as long, for each of the intervals
+            before = float(load.dot(state.motion))  # the @ operator takes twice as long, for each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             taken, stable, multipliers, work = self._take(number, state, load, live, speed, piece, watch)
             total += multipliers
@@ -308,7 +308,7 @@ class Run:
         return Run(system, local=local, viscous=self.viscous, dt=step, part=part, damping=damping)
 
     def unaccounted(self, state: State, least: float = 0.0, since: State | None = None) -> float:
-        """Share of the work of the loads, or of at least `least` [J], that the ledger misses: in all or since a state.
+        """Missing energy relative to the work of the loads, or to `least` [J] if that is more; in all or since a state.
 
         The works of the dead and the live load count separately, because they nearly cancel while a slender wall
         topples, and so does the energy that ties have released from their preloads.
@@ -345,7 +345,7 @@ class Run:
         return max(0.0, -self.ledger(state).residual) - self.system.ties.stored(np.zeros(len(self.system.ties)))
 
     def unbalanced(self, state: State) -> float:
-        """Largest unbalanced force of the last step, relative to its block's weight."""
+        """Largest unbalanced force of the last step, each in its unit (`force_unit`), as a rule its block's weight."""
         return self.system.measure(state.unbalanced)
 
     def forces(self, state: State) -> tuple[Array, Array]:
@@ -414,7 +414,7 @@ class Run:
         return np.asarray(total + search.resultants(contacts_of(state), state.motion, np.array(self.forces(state))))
 
     def ledger(self, state: State, load: Array | None = None) -> Ledger:
-        """Energy balance of the loads so far.
+        """Energy balance of a run so far.
 
         Velocities are half a step behind motions, and works of joints one step. If the `load` ``(nd,)`` [N] that acts
         is given, both are evaluated at the time of the motion, with the kinetic energy ½ m v⁻ v⁺; central differences

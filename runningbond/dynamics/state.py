@@ -28,7 +28,7 @@ class State:
     contacts: Contacts | None = None
     bears: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (nc,) the contacts' frames (`joints.frames`)
     external: float = 0.0  # work of the loads [J]
-    # part of it: by how much the work of dead loads exceeds that of constant ones, as they act at rest [J] (`rig`)
+    # part of it: by how much the work of dead loads exceeds that of the same loads constant as at rest [J] (`rig`)
     turned: float = 0.0
     multiplier: float = 0.0  # of the live load, if it drives: its mean over the last steps
     steps: int = 0  # steps taken
@@ -36,8 +36,8 @@ class State:
     # (1,) largest energy supplied at any energy check [J]
     supplied: Array = field(default_factory=lambda: np.zeros(1))
     stretch: Array = field(default_factory=lambda: np.zeros(0))  # (nt,) plastic elongation of the ties [m]
-    # work dissipated on earlier contacts, and, in `absorbed`, by their viscosity and by modes held since, or not done
-    # by preloads of ties because they came slowly [J]
+    # on earlier contacts: work of friction, cracking and crushing [J]; work of their viscosity and of the damping of
+    # modes held since, and work that preloads of ties did not do because they came slowly [J]
     friction: float = 0.0
     absorbed: float = 0.0
 

@@ -268,7 +268,7 @@ def moving_far(
     forces: tuple[Forces, Forces],
     deformation: Deformation = rigid_body,
 ) -> BlockSystem:
-    """The blocks of a scene at finite displacements: with contact search, and with what rotates with the blocks.
+    """The blocks of a scene at finite displacements: with contact search, and with loads that rotate with the blocks.
 
     Parameters
     ----------

@@ -3,8 +3,8 @@
     t = min(max(k (e − e_p) + P, 0), t_y),    e = g · q
 
 with the elongation e, its plastic part e_p, the stiffness k = E A / L, the preload P and the yield force t_y. A tie
-that has yielded, or gone slack, pulls again from e_p on. At finite displacements e is the increase of the distance
-between its ends since rest, and it pulls along the line between them.
+that has yielded, or gone slack, pulls again above e = e_p − P / k. At finite displacements e is the increase of the
+distance between its ends from that of the undeformed wall, and it pulls along the line between them.
 """
 
 import math
@@ -33,7 +33,7 @@ class TieRows(NamedTuple):
     share: Array  # (n,) elongation per unit of such a coordinate
     constants: Array  # (nt, 3) stiffness [N/m], yield force and preload [N]
     ends: BodyPoints = NO_POINTS  # (2 nt,) at finite displacements: the first ends of all ties, then the second ends
-    length: Array = np.zeros(0)  # (nt,) distance between the two ends at rest [m]
+    length: Array = np.zeros(0)  # (nt,) undeformed distance between the two ends [m]
 
     def __len__(self) -> int:
         return len(self.constants)

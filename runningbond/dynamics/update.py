@@ -2,7 +2,7 @@
 
 Local damping α resists every mode by α times the force on it (Cundall 1987). Walls come to rest soonest with it, but it
 slows down drift with superposed vibration: a wall may creep under it that would fall. Combined damping resists by as
-much, but only while that force changes against the velocity, as it always does in a vibration (Itasca), and not drift.
+much, but only while that force changes against the velocity, as always in a vibration (Itasca): it leaves drift alone.
 """
 
 from typing import Any, Literal, TypeAlias
@@ -33,7 +33,7 @@ the step before, which steps write to, and six buffers."""
 
 Clustered: TypeAlias = tuple[Any, ...]
 """All but the last of `Clusters`, three motions of clusters ``(nc, 3)`` and 1 / (1 + β); masses of the modes [kg], zero
-where held, and three accelerations, ``(nd,)`` each: undamped, of their own masses, and in their clusters."""
+where held, and three accelerations, ``(nd,)`` each: undamped, damped with their own masses, and damped in clusters."""
 
 Damping: TypeAlias = Literal["local", "combined"]
 """Damping of uncoupled modes; coupled modes always have combined damping, and bodies in clusters local damping."""

@@ -13,7 +13,7 @@ from .ties import STIFFNESS
 def stiffness_matrix(system: BlockSystem, springs: Array, taut: Mask) -> csr_array:
     """Stiffness ``(nd, nd)`` [N/m] of the bodies, of springs at joint points ``(2, np)`` [Pa/m] and of `taut` ties.
 
-    The kernels yield its rows, mode by mode.
+    Its jumps are evaluated with the kernels, mode by mode.
     """
     interface, ties, unit, rows = system.interface, system.ties, np.zeros(len(system.mass)), []
     for mode in range(len(unit)):

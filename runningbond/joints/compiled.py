@@ -1,4 +1,4 @@
-"""Compiled kernels: numba, with a cache on disk that is valid for as long as the source code is unchanged.
+"""Compiled kernels: numba, with a cache on disk that is valid as long as the source code is unchanged.
 
 Numba identifies a kernel by its source file, and would keep using it after a change of a kernel that it calls in
 another file. The cache therefore lies in a folder named after the digest of every file with kernels, and a package that
@@ -130,8 +130,8 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
     - Numba numbers functions process by process. Two functions of one source, with different values in their closures
       and compiled in different processes, may get the same number and so the same symbol: a third process that loads
       both would run the first one in place of the other. Here the kernel's identity is part of its symbols.
-    - A cache that is damaged, or on a full disk, costs a compilation and not the answer. If one entry can not be read,
-      Numba would discard all that is kept of a kernel, for all laws.
+    - A cache that is damaged, or on a full disk, costs a compilation and not the answer. If one entry cannot be read,
+      Numba would discard all entries of a kernel, for all laws.
     """
 
     _impl_class = _Kept
@@ -231,7 +231,7 @@ def inlined(function: Callable[..., Any]) -> Any:
 
 @kernel
 def copy_into(target: NDArray[Any], source: NDArray[Any]) -> None:
-    """Copy as ``target[:] = source``, which takes seconds to compile, because it copes with arrays that overlap."""
+    """Copy like ``target[:] = source``, which takes seconds to compile because it also handles overlapping arrays."""
     for i in range(target.size):
         target[i] = source[i]
 
@@ -257,6 +257,6 @@ class Compilation(Listener):  # type: ignore[misc]
 
 @contextmanager
 def compilation() -> Iterator[Compilation]:
-    """Measure the compilation time within the context: it is spent once a machine, and not part of a model's cost."""
+    """Measure the compilation time within the context: it is spent once per machine, no cost of a model."""
     with install_listener("numba:compile", listener := Compilation()):
         yield listener

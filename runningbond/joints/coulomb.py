@@ -25,7 +25,7 @@ def coulomb_constants(material: JointMaterial) -> tuple[float, ...]:
 
 
 def stored_uncut(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
-    """Recoverable energy of springs with a tension cut-off that closing retraces without loss, ``(np,)`` [J/m²]."""
+    """Recoverable energy of springs whose tension is cut off reversibly, without loss, ``(np,)`` [J/m²]."""
     torn = np.maximum(0.0, opening - points.tension / points.normal_stiffness)
     elastic = normal**2 / (2 * points.normal_stiffness) + tangential**2 / (2 * points.shear_stiffness)
     return np.asarray(elastic + points.tension * torn)
@@ -72,7 +72,7 @@ def _coulomb(of_mean: bool) -> Any:
 
         Stiffness-proportional viscosity β acts on the rates of the jumps: `viscosity` = β / Δt multiplies their change
         over the last step. It never lets a joint pull or slide beyond its strength, so it has no part in a mechanism,
-        but it removes the chatter of sliding contacts, on which local damping would otherwise act.
+        but it removes the chatter of sliding contacts, which local damping would otherwise brake.
         """
         segments, constants = parameters
         spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]

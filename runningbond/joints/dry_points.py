@@ -32,7 +32,7 @@ PRESSURE_SHARE, VISCOUS_SHARE = 0.9, 0.1
 def dry_within(of: Array, viscosity: float) -> tuple[float, float]:
     """Closure and its change in a step [m] up to which points with the constants `of` are dry and within their cap.
 
-    The closure is negative if these points are never so. Shear does not exceed Coulomb's tan φ times the pressure.
+    The closure is negative if `dry_points` cannot update such points. Their shear is at most tan φ times the pressure.
     """
     tension, shear, friction, last, growth, end, largest = of[2], of[3], of[4], of[7], of[10], of[12], of[13]
     if tension > 0.0 or shear > 0.0 or last < NEVER or growth * end > SERIES_LIMIT:

@@ -18,7 +18,7 @@ the history, −1 if the law has none."""
 def retell(history: Array, plastic: int, point: int, opening: float, slip: float) -> None:
     """Convert a point's history to jumps that are larger by `opening` and `slip` [m] from now on.
 
-    Viscosity does not take the change for a rate, and the point keeps its shear traction.
+    This change causes no viscous traction, and the point keeps its shear traction.
     """
     history[OPENING_BEFORE, point] += opening
     history[SLIP_BEFORE, point] += slip

@@ -70,7 +70,7 @@ def closed_under(points: KernelLaw, pressure: Array) -> tuple[Array, Array]:
 
 
 def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
-    """Energy of points that unload to their seat in opening and along their curve in closure, ``(np,)`` [J/m²]."""
+    """Recoverable energy ``(np,)`` [J/m²] of points that unload to contact in opening, along their curve in closure."""
     curve = curve_of(points)
     closed = stored_at.py_func(np.maximum(0.0, -normal), curve)
     opened = np.maximum(0.0, normal) * np.maximum(0.0, opening) / 2
@@ -85,7 +85,7 @@ def snapped(
     curve: Curve,
     flexibility: float,
 ) -> float:
-    """Energy [J/m²] put into a point in a step and not stored: more than the work of the cap if the point snaps.
+    """Energy [J/m²] put into a point in a step and not stored: more than the work of the cap if it crushes suddenly.
 
     `before` is closure [m] and shear [Pa], `after` pressure and shear [Pa], `change` that of both jumps [m].
     """
@@ -141,7 +141,7 @@ def any_points(
             pressure = pressure_at(closure, curve)
             elastic = -pressure
             viscous = viscosity * stiffness_at(pressure, curve) * change_n
-        flowed = 0.0  # slip of the cap
+        flowed = 0.0  # plastic slip on the cap
         n = min(elastic + viscous, sound * tension)
         most = max(0.0, room - friction * n)
         held = max(-most, min(most, trial))

@@ -24,7 +24,7 @@ FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 PLASTIC_CLOSURE = "plastic closure"
 """History row, in laws of joints that crush, of the overlap [m] at which a point closes.
 
-It is how far the point has been crushed, plus how far blocks overlapped if they met later."""
+It is how far the point has been crushed, plus the overlap at which area that was added later starts to press."""
 
 CRUSHING = "crushed"
 """History row, in laws of joints that crush, of κ of the cap [m]: above zero once a point has been crushed."""
@@ -68,7 +68,7 @@ class Law:
         a pressure [Pa], not negative, for a law with a `PLASTIC_CLOSURE`; None for other laws, whose stiffness is k_n.
     weakens
         ``weakens(constants)``: whether points of materials may lose strength, ``(ns,)``, from the materials' constants
-        ``(ns, n_constants)``; None if all points do in a law with damage, and none in other laws.
+        ``(ns, n_constants)``. None means all points for a law with damage, and no points for other laws.
     """
 
     name: str
@@ -182,13 +182,13 @@ class KernelLaw:
     def plastic_closure(self, history: Array) -> Array:
         """Overlap at which each point closes, for a history ``(rows, np)`` [m]; zero without such a row.
 
-        It is how far the point has been crushed, plus how far blocks overlapped if they met later.
+        It is how far the point has been crushed, plus the overlap at which area that was added later starts to press.
         """
         known = PLASTIC_CLOSURE in self.law.history
         return history[self.law.row(PLASTIC_CLOSURE)].copy() if known else np.zeros(self.points)
 
     def crushed(self, history: Array) -> Array:
-        """How far each point has been crushed, for a history ``(rows, np)`` [m]; zero for a law without crushing."""
+        """How far each point has been crushed [m], for a history ``(rows, np)``; zero without a plastic closure."""
         closure = self.plastic_closure(history)
         return np.where(history[self.law.row(CRUSHING)] > 0, closure, 0.0) if CRUSHING in self.law.history else closure
 

@@ -43,7 +43,7 @@ class PointStrength:
 
     @property
     def strongest(self) -> float:
-        """Largest force that a point carries without pressure [N]; zero for dry joints."""
+        """Largest of the tensile forces and of the shear forces at that tension [N]; zero for dry joints."""
         return float(max(self.tension.max(initial=0.0), self.shear.max(initial=0.0)))
 
     def violation(self, normal: Array, tangential: Array) -> Array:

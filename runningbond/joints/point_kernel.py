@@ -22,7 +22,7 @@ def respond(
         sticks = abs(trial) <= resistance
         tangential = trial if sticks else math.copysign(resistance, trial)
         forces[0, i], forces[1, i] = normal, tangential
-        # A point that sticks keeps its plastic slip exactly, because eq. 4 would round it.
+        # A point that sticks keeps its plastic slip exactly; eq. 4 would round it.
         forces[2, i] = plastic[i] if sticks else slip[i] - tangential / k_t[i]
         tangent[i, 0, 0], tangent[i, 0, 1] = k_n[i] if closed else 0.0, 0.0
         tangent[i, 1, 0] = 0.0 if sticks or not closed else -math.copysign(friction[i] * k_n[i], trial)

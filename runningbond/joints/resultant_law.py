@@ -57,7 +57,7 @@ class ResultantLaw:
         )
 
     def violated(self, action: Array, tolerance: float = 0.0) -> Mask:
-        """Failure modes ``(nj, 3)`` in which actions ``(nj, 3)`` exceed Eq. 3 by more than a tolerance [N]."""
+        """Failure modes ``(nj, 3)`` of actions ``(nj, 3)`` beyond Eq. 3 by a tolerance [N], of moments times `arm`."""
         room = tolerance * np.column_stack([np.ones_like(self.arm), np.ones_like(self.arm), self.arm])
         beyond: Mask = self.excess(action) > room
         return beyond

@@ -5,7 +5,7 @@ import numpy as np
 from runningbond.scene import Indices, JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
 
 GIVES = 2.0
-"""Smallest motion that counts as a collapse, relative to the elastic motion of all joints under that load.
+"""Smallest motion that counts as a collapse, relative to the elastic motion of the wall under the same load.
 
 A load that is applied suddenly moves an elastic wall this far without any collapse.
 """
@@ -19,7 +19,7 @@ as much as a collapse.
 """
 
 STIFF = 1e-5
-"""Rounding force at displacements of a collapse, in units of force, above which joints are too stiff (as at rest)."""
+"""Rounding force at collapse displacements, per unit of force, above which joints are too stiff; as for rest."""
 
 EPSILON = float(np.finfo(np.float64).eps)
 
@@ -100,7 +100,7 @@ def stiffness_note(overlap: float, collapse: float, size: float, stiffness: floa
     overlap, collapse, size
         Largest overlap of two blocks at rest, displacement that counts as collapse, size of a block [m].
     stiffness, force_unit
-        Largest stiffness of a joint point [N/m], and smallest force unit for unbalanced forces [N].
+        Largest stiffness of a joint point [N/m], and smallest unit by which unbalanced forces are divided [N].
     """
     if overlap > SOFT * collapse:
         return (

@@ -17,7 +17,7 @@ PER_MATERIAL = 4
 
 
 def law_of(material: JointMaterial) -> Law:
-    """Law of a material: its own, or Coulomb's, with softening if it has a fracture energy, or `INTERFACE` beyond."""
+    """Law of a material: its own, else Coulomb's, softening, or `INTERFACE` for crushing, closure, curved softening."""
     if isinstance(material.law, Law):
         return material.law
     if material.law is not None:

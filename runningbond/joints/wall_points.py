@@ -17,7 +17,7 @@ BETWEEN = 9
 with 17 points 0.4 % less (SW.200.1, docs/laboratory.md)."""
 
 MIN_POINTS = 3
-"""Least number of points on a part of such a joint: with two, its rotational stiffness is that of its ends alone."""
+"""Least number of points on a part of such a joint: with two, its rotational stiffness is that of its two ends."""
 
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
@@ -28,9 +28,9 @@ def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
 def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:
     """Points at which joints are evaluated: their ends, and also between them if any joint softens, crushes or closes.
 
-    Evaluated at its ends alone, a joint is three times as stiff against rotation as along its whole length. Dry and
-    perfectly plastic joints carry the same load in both cases, although friction may lead along another path; a
-    softening joint carries up to three times as much at its ends alone (a stone on a bed).
+    Evaluated only at its ends, a joint is three times as stiff against rotation as along its whole length. Dry and
+    perfectly plastic joints carry the same load in both cases, unless friction leads to another load path; a softening
+    joint carries up to three times as much if it is evaluated only at its ends (a stone on a bed).
 
     If joints have several parts, each part has a rule, and all parts have about as many points as a whole joint.
     """
@@ -40,7 +40,7 @@ def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:
 def spreads(scene: Scene, *, finite: bool = False) -> bool:
     """Whether any joint softens, crushes or closes, so that the distribution of pressure along it matters.
 
-    At `finite` displacements, sides may come into contact with the default material even if no joint is made of it.
+    At `finite` displacements, new contacts have the default material, even if no joint of the wall has it.
     """
     materials = scene.joint_materials if finite else scene.materials_of_joints
     return any(each.compressive_strength or each.closure or each.softens or _breaks(each.law) for each in materials)
@@ -52,7 +52,7 @@ def _breaks(law: object) -> bool:
 
 
 def impact_note(scene: Scene) -> str:
-    """Note for a message on impacts on joints that are evaluated along their length; empty for ends alone."""
+    """Note for a message on impacts on joints that are evaluated along their length; empty for others."""
     what = "joints that soften, crush or close take impacts along their whole length, and rocking loses less energy"
     return f"{what} than by Housner's equation" if spreads(scene, finite=True) else ""
 
@@ -60,8 +60,8 @@ def impact_note(scene: Scene) -> str:
 def ends_note(scene: Scene, points: JointPoints) -> str:
     """Note for a message on joints with few points under a beam held at its height; empty for others.
 
-    A block that rotates under the beam presses on the near end of a joint as if all pressure around it acted there: its
-    strut is then steeper than the real one, and slides although friction is sufficient for the real one.
+    A block that rotates under the beam presses on the near end of a joint as if all pressure around it acted there: the
+    strut in it is then flatter than the real one, and slides although friction is sufficient for the real one.
     """
     fewest = int(np.bincount(points.joint).min()) if len(points) else BETWEEN
     if not len(scene.late_pins) or fewest >= BETWEEN:
@@ -102,7 +102,7 @@ def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
 
 
 def wall_caps(scene: Scene, joint: Indices) -> tuple[Array, Array]:
-    """Compressive strength [Pa] of joints of a scene, infinite without one, and closure at it [m], two ``(n,)``."""
+    """Compressive strength [Pa] of joints of a scene, infinite without one, and `peak_closure` [m]: two ``(n,)``."""
     caps = [(each.compressive_strength or np.inf, each.peak_closure) for each in scene.joint_materials]
     strength, peak = np.array(caps, dtype=float)[scene.material_of_joint[joint]].T
     return strength, peak
@@ -122,7 +122,7 @@ def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tup
 def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Array) -> PointLaw:
     """Law with a tangent for a scene's joint points, from their strength and stiffnesses ``(np,)`` [N/m].
 
-    Raises a `SceneError` for a law without a tangent.
+    Raises a `SceneError` for crushing, for closure, and for a law without a tangent.
     """
     for material in scene.materials_of_joints:
         for key in ("compressive_strength", "closure"):

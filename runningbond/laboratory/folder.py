@@ -173,7 +173,7 @@ def _check_picture(path: Path) -> None:
 
 
 def _is_pushed_left(wall: MeasuredWall) -> bool:
-    """Whether a wall was pushed to the negative side: to the positive one by noise, or less in a monotonic test."""
+    """Whether a wall was pushed to the negative side: to the positive side only by noise or, if monotonic, less far."""
     right, left = wall.reach
     return left * SWING > right or (left > right and not wall.is_cyclic)
 

@@ -1,4 +1,4 @@
-"""Hand formulas: the force at which a wall rocks or slides under the total vertical load.
+"""Hand formulas: the force at which a wall rocks or slides under the vertical load on it, without its own weight.
 
 Stored outcomes of these formulas also depend on the digest of this file, which imports nothing else from its package.
 """
@@ -12,7 +12,7 @@ FORMULAS = ("rocking", "sliding")
 """Names of the two hand formulas."""
 
 WHOLE = 0.5
-"""Length of a bed, relative to the longest one, above which a wall may slide along it; openings interrupt shorter
+"""Least length, relative to the longest bed, of a bed along which a wall may slide; openings interrupt shorter
 beds."""
 
 

@@ -14,7 +14,7 @@ SWING = 0.05
 loading."""
 
 TWO_SIDED = 0.2
-"""Ratio of the largest displacements to the lesser and to the other side above which a wall was pushed to both."""
+"""Ratio of the largest displacements to both sides, the smaller over the larger, above which a test is two-sided."""
 
 LARGER = 1.1
 """Ratio of amplitudes up to which a cycle repeats an earlier one, and is left out of a prediction."""

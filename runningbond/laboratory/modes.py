@@ -24,7 +24,7 @@ GROUPS = {"R": ROCKING, "TC": ROCKING, "F": DIAGONAL, "S": DIAGONAL, "DT": DIAGO
 HALF = 0.5
 
 VISIBLE = 1e-4
-"""Width above which a crack is visible and drawn [m]."""
+"""Least width of a crack that is visible and drawn after a test [m]."""
 
 
 def measured_modes(words: Iterable[str]) -> tuple[str, ...]:

@@ -188,7 +188,7 @@ def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
 
 
 def _stiffened(scene: Scene, parts: int) -> Scene:
-    """The scene with inner joints stiffened, relative to parts of a block, as in `_crack` relative to its halves."""
+    """The scene with inner joints at least `STIFFER` times as stiff as the parts of blocks between them."""
     inner = scene.inner_joint
     if inner is None:
         return scene

@@ -23,7 +23,7 @@ UNLOADED = 0.01
 """Share of the largest displacement by which a one-sided record goes back if it is unloaded; less is noise."""
 
 ROUNDING = 1e-9
-"""Net work of a loop, relative to the sum of its absolute works, below which it is rounding error."""
+"""Net work of a loop, relative to the sum of the magnitudes of its increments, up to which it is rounding error."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ def swing(curve: Array, force: float) -> float | None:
 
     Both forces lie on one branch, to exclude residual displacements due to friction.
     """
-    start: tuple[float, float] | None = None  # side on which the force was last exceeded; where it no longer was
+    start: tuple[float, float] | None = None  # side of the last excess of the force; displacement at its end
     for (x0, y0), (x1, y1) in pairwise(curve.tolist()):
         if abs(y0) >= force > abs(y1) or (abs(y0) >= force and abs(y1) >= force and y0 * y1 < 0):
             side = float(np.sign(y0))
@@ -168,7 +168,7 @@ def loops(curve: Array) -> list[Loop]:
 def energy_ratio(predicted: Sequence[Loop], measured: Sequence[Loop]) -> float | None:
     """Work of predicted loops over that of measured loops of equal reach, to within `LARGER`.
 
-    Of several loops of equal reach the first counts. None if no predicted loop goes as far as a measured one.
+    Of several loops of equal reach the first counts. None if no predicted loop has the reach of a measured one.
     """
     own, theirs, farthest = 0.0, 0.0, 0.0
     for loop in measured:

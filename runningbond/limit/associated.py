@@ -26,7 +26,7 @@ from .repair import ROUNDING
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
 ZERO_MULTIPLIER = 1e-6
-"""Multiplier, in `Equilibrium.live_unit`, below which the width of a bracket counts absolutely: λ may well be zero."""
+"""Multiplier, in `Equilibrium.live_unit`, below which widths of brackets are relative to this value: λ may be zero."""
 
 PROOF_TOLERANCE = 1e-6
 """Largest relative residual, violation or duality gap at which the solution of a program is accepted."""
@@ -35,7 +35,7 @@ WIDTHS = ("gap", "complementarity")
 """Measures that give the width of the bracket; the others decide whether it is a bracket at all."""
 
 STRENGTH_CAP = 1e6
-"""Strength of a joint point, in force units (weights of the heaviest block), to which larger ones are first cut.
+"""Strength of a joint point, in force units (largest dead load on a block), to which larger ones are first reduced.
 
 Joints rarely reach such strengths, and numbers that large would swamp the other forces of the program.
 """
@@ -95,9 +95,9 @@ class LimitState:
         - ``violation``: largest distance of a point's forces from its cone of strength, or of a tie's pull from its
           range, relative to the largest force.
         - ``penetration``: largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion;
-          if tan φ exceeds 1, divided by it, as it would amplify rounding errors.
+          divided by tan φ if that exceeds 1, because a large tan φ amplifies rounding errors.
         - ``gap``: distance between static and kinematic multiplier, relative to the larger of the static one and 1.
-        - ``complementarity``: dissipation minus power of the forces at each point and tie, relative to the live load's.
+        - ``complementarity``: dissipation minus power of forces at points and ties, relative to the live load's power.
         """
         system, forces, strength = self.system, self.forces, self.system.strength
         multiplier, tangential, motion = forces.multiplier, forces.tangential, forces.motion
@@ -108,7 +108,7 @@ class LimitState:
         outside = strength.violation(normal, tangential) / np.hypot(1.0, strength.friction)
         beyond = np.maximum(-forces.tie, forces.tie - system.tie_yield)
         parts = (forces.pressure, tangential, forces.tie, system.dead)
-        # For a weightless wall that carries nothing, all forces are rounding errors.
+        # In a weightless wall that carries nothing, all forces are rounding errors.
         largest = max(ZERO_MULTIPLIER, abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts))
         fastest = np.abs(motion).max(initial=0.0)
         spent = normal * opening + tangential * slip
@@ -134,9 +134,9 @@ class LimitState:
 def limit_state(system: Equilibrium) -> LimitState:
     """Solve the associated limit analysis of a scene; the status of the solution may differ from ``optimal``.
 
-    Strengths above `STRENGTH_CAP` are first cut to it. What is admissible for weaker joints is so for stronger ones:
-    the solution holds if its mechanism dissipates nothing at strengths that were cut, and the state then has the cut
-    system. Otherwise forces are so large that the analysis is repeated with a force unit `STRENGTH_CAP` times as large.
+    Strengths above `STRENGTH_CAP` are first reduced to it. Forces admissible for weaker joints are admissible for
+    stronger ones: the solution holds if its mechanism dissipates nothing at reduced strengths, and the state then has
+    the reduced system. Otherwise the analysis is repeated with a force unit `STRENGTH_CAP` times as large.
     """
     if system.crushing is not None:
         forces, rests = crushed(system, system.crushing)
@@ -145,7 +145,7 @@ def limit_state(system: Equilibrium) -> LimitState:
     if weaker is system:
         return _solved(system)
     state = _solved(weaker)
-    if state.forces.status == "budget":  # the mechanism may dissipate in joints that were cut
+    if state.forces.status == "budget":  # the mechanism may dissipate at reduced strengths
         return replace(state, forces=replace(state.forces, motion=np.zeros(0)))
     if (
         state.forces.status == "optimal"
@@ -161,14 +161,14 @@ def _with_capped_strength(system: Equilibrium) -> Equilibrium:
     strength = system.strength
     if strength.strongest <= STRENGTH_CAP:
         return system
-    # The cone is truncated at a lower tension, where it is wider, so the cohesion of a point that only slips is kept.
+    # At the lower tension the cone is wider: the shear strength there is larger, and the cohesion is kept.
     tension = strength.tension.clip(max=STRENGTH_CAP)
     shear = (strength.cohesion - strength.friction * tension).clip(max=STRENGTH_CAP)
     return replace(system, strength=PointStrength(strength.friction, tension, shear))
 
 
 def uses_cut_strength(system: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
-    """Whether a mechanism ``(nd,)`` dissipates energy, beyond rounding, at strengths that a weaker system has cut.
+    """Whether a mechanism ``(nd,)`` dissipates energy, beyond rounding, at strengths that are lower in a weaker system.
 
     A point that opens by exactly `dilatancy` times its slip dissipates cohesion only.
     """
@@ -187,11 +187,11 @@ def _solved(system: Equilibrium) -> LimitState:
         if state is not None:
             return state
     forces = solve_forces(system, coulomb(system.strength))
-    if forces.status in ("infeasible", "numerical"):  # the simplex method decides if the interior point cannot
+    if forces.status in ("infeasible", "numerical"):  # if the interior point cannot decide, the simplex method does
         forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
     state = LimitState(system, forces)
     if forces.status == "optimal" and state.measures["penetration"] > ROUNDING and not is_large(system):
-        # The simplex method takes joints of very little friction for frictionless ones, which carry any pressure.
+        # HiGHS treats joints of very little friction as frictionless, so that they carry any pressure.
         exact = _proved(system)
         if exact is not None and exact.forces.status == "optimal":
             return exact
@@ -199,7 +199,7 @@ def _solved(system: Equilibrium) -> LimitState:
 
 
 def _proved(system: Equilibrium) -> LimitState | None:
-    """Return what the interior point's solution of a large wall proves; None if that is not enough."""
+    """Return the state that the interior point's solution proves; None if it proves neither a bracket nor a verdict."""
     dead = system.under_dead_load()
     resting, point = resting_forces(dead)
     fall = fall_at_rest(dead, point) if resting is None else None
@@ -236,7 +236,7 @@ def _narrower(first: LimitState, second: LimitState) -> LimitState:
 
 
 def stands_under_dead_load(system: Equilibrium) -> bool | None:
-    """Whether admissible forces balance the dead load alone; None if the solver cannot decide.
+    """Whether admissible forces balance the dead load without live load; None if the solver cannot decide.
 
     Normal forces nearly always suffice, and their program is much smaller; the full friction cones are tried only if
     normal forces do not suffice.
@@ -251,7 +251,7 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
 
 
 def bears_dead_load(scene: Scene) -> bool:
-    """Whether admissible joint forces, of crushing joints too, balance a scene's dead load and some live load."""
+    """Whether admissible joint forces, also of crushing joints, balance a scene's dead load and some live load."""
     outcome = limit(scene)
     if outcome.status == "collapse":
         return scene.settlement is not None or (outcome.upper or 0.0) > 0
@@ -270,7 +270,7 @@ def is_self_locking(scene: Scene) -> bool:
 
 
 def _balances_any_multiple(system: Equilibrium) -> bool:
-    """Whether forces of dry joints balance the live load alone; they may then be added any number of times.
+    """Whether forces of dry joints balance the live load without dead load; they can be added any number of times.
 
     Ties are left out, because their forces are bounded.
     """
@@ -321,15 +321,15 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     scene, tolerance
         The scene, and the required relative width of the bracket. A vertex closes the bracket to about 1e-9. The
         repaired interior point of a large wall, and the facets of crushing joints, close it to 1e-6; for a very large
-        wall, or a large one with crushing joints, to 1e-4; for a huge wall to 1e-2. A wider one than required is
-        ``undecided``.
+        wall, or a large one with crushing joints, to 1e-4; for a huge wall to 1e-2. If the bracket is wider than
+        required, the status is ``undecided``.
 
     Returns
     -------
     Outcome
         `lower` follows from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces. For
-        a moving support λ is the least share of the dead load that it can carry, `lower` follows from the mechanism and
-        `upper` from the forces; with a negative share it has to be driven along its motion.
+        a moving support λ is the smallest share of the dead load that it can carry, `lower` follows from the mechanism
+        and `upper` from the forces; if λ is negative, the support has to be driven along its motion.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -364,16 +364,16 @@ def remarks(scene: Scene, message: str) -> str:
 
 
 def proved_bound(scene: Scene) -> float | None:
-    """Multiplier above which the wall cannot stand, if `limit` proves one; Ctrl-C, at which `limit` returns, is raised.
+    """Multiplier above which the wall cannot stand, if `limit` proves one; Ctrl-C raises KeyboardInterrupt.
 
-    It is rounded up to nine digits: its last digits differ from machine to machine, and load steps are placed by it.
+    It is raised by 1e-9 and rounded to nine digits: more digits differ by machine, and load steps depend on it.
     """
     upper = proved_outcome(scene).upper
     return None if upper is None else float(f"{upper + 1e-9 * abs(upper):.9g}")
 
 
 def proved_outcome(scene: Scene) -> Outcome:
-    """Outcome of `limit`; Ctrl-C, at which `limit` returns, is raised."""
+    """Outcome of `limit`; an interrupted linear program raises KeyboardInterrupt instead of an undecided outcome."""
     outcome = limit(scene)
     if outcome.message.startswith(INTERRUPTED):
         raise KeyboardInterrupt
@@ -405,7 +405,7 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
 
 
 def dead_load_fall(outcome: Outcome, state: LimitState) -> Outcome:
-    """Outcome of a wall that collapses under its dead load: its mechanism and, unless large, the share it can carry."""
+    """Outcome of a wall that collapses under its dead load: mechanism and, for small walls, the share it can carry."""
     dead, motion = state.system.under_dead_load(), state.forces.motion
     outcome = replace(outcome, status="infeasible")
     if not is_large(dead):

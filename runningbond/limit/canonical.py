@@ -2,7 +2,7 @@
 
 A degenerate linear program has many optimal vertices. Which of them a solver returns depends on the order of its rows
 and on the last bits of its numbers. A search that starts from such vertices therefore gives the same result for a wall
-and its mirror image only if both yield the same numbers.
+and its mirror image only if both have the same numbers.
 """
 
 from dataclasses import dataclass, replace

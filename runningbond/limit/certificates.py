@@ -1,7 +1,7 @@
 """Certificates of collapse with true Coulomb friction.
 
-A mechanism is certified by forces in equilibrium under the full Coulomb law that vanish where the mechanism opens and,
-where it slides, are at the limit and oppose the slip. The multipliers of such forces form an interval; the wall can
+A mechanism is certified by balanced forces that obey Coulomb's law, vanish where the mechanism opens and, where it
+slides, are at the limit and oppose the slip. The multipliers of such forces form an interval; the wall can
 collapse at every load in it.
 """
 
@@ -25,12 +25,12 @@ PENETRATION = 1e-6
 """Closing rate, relative to the mechanism's largest motion, above which a mechanism is rejected."""
 
 REPAIR_FREEDOMS = 700
-"""Degrees of freedom from which driving loads are found by interior point and repair, faster than by HiGHS."""
+"""Degrees of freedom from which interior point and repair find the loads that drive a mechanism faster than HiGHS."""
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at its smallest and largest load."""
+    """Proof that a wall can collapse: scaled mechanism ``(nd,)``, and forces at its smallest and largest known load."""
 
     motion: Array
     least: ForceSolution
@@ -45,9 +45,9 @@ def least_multiplier(certificate: Certificate) -> float:
 def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -> ForceSet | None:
     """Set of forces that obey Coulomb's law on a mechanism ``(nd,)``: zero where it opens, limiting where it slides.
 
-    A tie that lengthens is at yield, and one that shortens is slack. The reaction that holds a beam at its height
-    cannot pull it up, because a moving wall does not get lower. None for a mechanism whose blocks interpenetrate. Jumps
-    up to `still` times the largest motion count as zero.
+    A tie that lengthens is at yield, and one that shortens is slack. The reaction that holds a beam at its height can
+    only press it down, because a moving wall does not get lower. None for a mechanism whose blocks interpenetrate.
+    Jumps up to `still` times the largest motion count as zero.
     """
     opening, slip = system.jumps(motion)
     largest = float(np.abs(motion).max(initial=0.0))
@@ -74,8 +74,8 @@ def certify(
 ) -> Certificate | None:
     """Find the smallest and largest load that drive a mechanism; None if there are none.
 
-    If the largest load is unbounded, only the smallest counts. Forces at both loads come from `extreme`, for the aims
-    ``smallest`` and ``largest``, and are as exact as it is; without `extreme` they are proved.
+    If the largest load is unbounded, the smallest is taken for both. `extreme` finds the forces for the aims
+    ``smallest`` and ``largest``, which are as exact as its results; without `extreme` they are proved.
     """
     forces = driving_forces(system, motion)
     if forces is None:
@@ -91,7 +91,7 @@ def certify(
 
 
 def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int], None]) -> Certificate | None:
-    """Find approximate loads that drive a mechanism, by interior points that `count` adds up; `certify` proves them."""
+    """Approximate loads that drive a mechanism, by interior points, counted by `count`; `certify` proves loads."""
 
     def extreme(forces: ForceSet, aim: Aim) -> ForceSolution:
         count(1)
@@ -103,7 +103,7 @@ def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int],
 def _extreme_forces(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:
     """Forces at an extreme load; for large walls they are near the extreme, but still proved.
 
-    That load is rounded to the digits that the balance of forces has; the last ones differ from machine to machine.
+    In that case the load is rounded to twelve digits, as the balance of forces; more differ from machine to machine.
     """
     found = nearly_extreme(system, forces, aim) if system.freedoms >= REPAIR_FREEDOMS else None
     if found is None:

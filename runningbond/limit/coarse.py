@@ -2,14 +2,14 @@
 
 Most mechanisms of small load move a few large parts of a wall. A program over these parts takes milliseconds instead of
 some tenths of a second, and a mechanism of the parts is also a mechanism of the full wall (`macro`). Where the wall
-separates is not known beforehand. It is estimated by sequences of interior-point programs over the full wall. Their
-mechanisms mix all those that collapse at about the same load, so some joints move far and others barely. Blocks that
-move together in all programs of a sequence are glued, and the glued wall is searched like any other (`search`).
+separates is not known beforehand. It is estimated by sequences of interior-point programs over the full wall. Each
+solution mixes all mechanisms of about the same load, so some joints move far and others barely. Blocks that move
+together in all programs of a sequence are glued, and the glued wall is searched like any other (`search`).
 
 Forces that balance the blocks of the wall also balance its parts. The loads that drive a mechanism of the glued wall
-therefore include all those that drive it in the full wall: the smallest load of the glued wall is the lower one, and if
-the glued wall has no such forces, the full wall has none. Certificates are therefore proved in the full wall from the
-lowest up, until the next one cannot be lower than what is proved, and likewise from the highest down.
+therefore include all those that drive it in the full wall: the smallest load in the glued wall is not above that in the
+full wall, and if the glued wall has no such forces, the full wall has none. Certificates are therefore proved in the
+full wall from the lowest up, until the next one cannot be lower than those proved, and likewise from the highest down.
 
 A wall that moves in many small parts, e.g. one that slides all over, has no such mechanism, and is left to `search`.
 """
@@ -34,10 +34,10 @@ from .search_log import Observer, SearchLog
 from .sequences import WEIGHTS, averaged
 
 COARSE_POINTS = 1000
-"""Joint points from which a wall is searched in parts first; for smaller walls a direct search is as fast."""
+"""Number of joint points from which a wall is searched in parts first; for smaller walls a direct search is as fast."""
 
 SEQUENCE_PROGRAMS = 8
-"""Programs of a sequence that shows where a wall may separate."""
+"""Number of programs of a sequence that shows where a wall may separate."""
 
 GLUE_LEVELS = tuple(float(f"{digit}e-{power}") for power in (2, 3, 4, 5) for digit in (5, 2, 1))
 """Levels of jumps, relative to the largest motion, below which blocks may be glued."""
@@ -47,23 +47,23 @@ PROGRAM_FREEDOMS, SEQUENCE_FREEDOMS, FIRST_FREEDOMS = 45, 150, 300
 of the first two sequences together."""
 
 FEW_PROGRAMS, PROGRAMS = 60, 400
-"""Programs after which the search of a glued wall ends, for one glued by one program and by several."""
+"""Number of programs after which the search of a glued wall ends: of one glued by one program, and by several."""
 
 MAX_DRY_STARTS, MAX_STARTS = 4, 40
-"""Consecutive sequences without a lower load after which the search ends, and largest number of sequences."""
+"""Number of consecutive sequences without a lower load after which no more are run, and largest number of sequences."""
 
 COST_FACTOR = 4
-"""Largest cost of a search, relative to one over the full wall; most searches end long before."""
+"""Largest cost of a search, relative to that allowed over the full wall; most searches end long before."""
 
 NEIGHBOURHOOD_FREEDOMS, NEIGHBOURHOOD_SEQUENCES = 350, 8
 """Largest number of degrees of freedom of a neighbourhood of a certificate, and sequences run in it."""
 
 MAX_FAILURES = 6
-"""Consecutive neighbourhoods without a lower load after which a certificate is left."""
+"""Number of consecutive neighbourhoods without a lower load after which the search around a certificate ends."""
 
 MIN_CHANGE = 1e-5
-"""Change of the multiplier, relative to the larger of it and 1, worth a proof; interior points resolve no smaller
-ones."""
+"""Change of the multiplier, relative to the larger of it and 1, above which a proof is tried; interior points do not
+resolve smaller changes."""
 
 
 @dataclass(eq=False)
@@ -135,7 +135,7 @@ class CoarseSearch:
     def _search_neighbourhoods(self) -> None:
         """Search neighbourhoods of the lowest certificate until several in a row have nothing lower.
 
-        The first neighbourhood is that of all moving points, the others are each that of a single moving point.
+        The first neighbourhood of a certificate is that of all moving points, the others each that of a single one.
         """
         rng, failures = np.random.default_rng(3), 0
         while (best := self.found.best) is not None and failures < MAX_FAILURES and not self._ends():
@@ -157,7 +157,7 @@ class CoarseSearch:
     def _start(self, pressure: Array, weight: float | None, associated: ForceSolution | None) -> Array:
         """Glue what barely moves in a sequence of programs from a pressure ``(np,)``, and search what is left.
 
-        The wall is glued by each mechanism alone, and by all of them and an associated one together. Returns the
+        The wall is glued by each single mechanism, and by all of them together with an associated one. Returns the
         largest relative jumps ``(np,)`` of the sequence. Weight None stands for (k + 1)^(−1/2), as in `sequences`.
         """
         before, parting = self.found.lowest, self._jumps(np.zeros(self.system.freedoms))
@@ -214,7 +214,7 @@ class CoarseSearch:
     def _prove(self, glued: Glued, certificates: Sequence[Certificate]) -> None:
         """Prove certificates of the glued wall in the full wall, as long as they may extend the range of loads found.
 
-        After Ctrl-C only lower loads are proved.
+        After Ctrl-C only lower loads are proved, no higher ones.
         """
         for each in sorted(certificates, key=least_multiplier):
             if not is_worth(self.found.lowest, each.least.multiplier):
@@ -227,7 +227,7 @@ class CoarseSearch:
         self.observe(self.found)
 
     def _prove_motion(self, motion: Array) -> None:
-        """Prove a mechanism ``(nd,)``, unless one that opens and slides at the same points was tried before."""
+        """Certify a mechanism ``(nd,)`` of a new jump pattern; only approximately inside the range of loads found."""
         jumps = jump_pattern(self.system, motion)
         if jumps in self.tried:
             return
@@ -246,10 +246,10 @@ class CoarseSearch:
 
 
 def is_worth(large: float, small: float) -> bool:
-    """Whether the difference of two multipliers, which may be infinite, is worth a proof."""
+    """Whether two multipliers, which may be infinite, differ enough for a proof."""
     return large > small and (np.isinf(large - small) or large - small > MIN_CHANGE * max(1.0, abs(large)))
 
 
 def finest(system: Equilibrium, place: Array, jumps: Array, freedoms: int) -> Glued | None:
-    """Glue the wall where points jump least ``(np,)``, leaving at most so many freedoms; None if none are left."""
+    """Glue the wall where `jumps` ``(np,)`` are smallest, with at most `freedoms` left; None if that leaves none."""
     return freest(system, place, jumps, GLUE_LEVELS, freedoms)

@@ -1,9 +1,9 @@
 """Limit analysis of joints that crush, by column generation over resultants on the boundary of their strength domain.
 
-Forces of a joint are convex combinations of known resultants that it carries. They form a polyhedron inside the true
-domain, so the program's multiplier is a lower bound. Its mechanism, inserted into the support function of the true
-domain, yields an upper bound. The point at which that function takes its value is a new resultant. It is added and the
-program solved again, until the bounds are as close as required (Dantzig & Wolfe 1960).
+Forces of a joint are convex combinations of zero and known resultants that it carries. They form a polyhedron inside
+the true domain, so the program's multiplier is a lower bound. Its mechanism, inserted into the support function of the
+true domain, yields an upper bound. The point at which that function takes its value is a new resultant. It is added and
+the program solved again, until the bounds are as close as required (Dantzig & Wolfe 1960).
 """
 
 from contextlib import suppress
@@ -41,16 +41,16 @@ SHARE_RATIO, SMALLEST_FORCE = 16.0, 0.1
 """Ratio of successive shares of a joint that the first stress blocks occupy, and smallest force, in force units."""
 
 MIN_POWER_GAIN = 1e-10
-"""Power, relative to that of all joints, by which a new resultant must exceed those known to be added."""
+"""Excess of a new resultant's power over that of the known ones, relative to that of all joints, for it to be added."""
 
 ZERO_MULTIPLIER = 1e-3
-"""Multiplier below which the width of the bracket is measured absolutely, in multiples of this value."""
+"""Multiplier below which the width of the bracket is relative to this value."""
 
 HINGE_SHARE, LISTED_HINGES = 1e-3, 3
 """Share of the dissipation of crushing joints from which a hinge counts, and number of hinges that a message lists."""
 
 IDLE_FORCE = 1e-5
-"""Force of a resultant, relative to the largest, below which repair also tries to balance forces without it."""
+"""Force of a resultant, relative to the largest, below which repair also tries zero, and the compliance factor then."""
 
 NO_FORCE = 1e-9
 """Force, in force units, that counts as zero."""
@@ -69,7 +69,7 @@ class Resultants:
         return np.asarray(np.abs(self.forces).max(axis=0))
 
     def nearer(self, joints: Crushing, jumps: Array) -> "Resultants":
-        """Add the resultants that dissipate more than the known ones on jumps ``(3, nc)``."""
+        """These resultants and, where they dissipate more on jumps ``(3, nc)``, those of the true domain."""
         forces = joints.forces(jumps)
         power, best = (forces * jumps).sum(axis=0), np.zeros(len(joints))
         np.maximum.at(best, self.owner, (self.forces * jumps[:, self.owner]).sum(axis=0))
@@ -165,8 +165,8 @@ def target_width(system: Equilibrium) -> float:
 def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool | None]:
     """Forces and mechanism of a system with crushing joints, and whether it rests under its dead load.
 
-    Their bracket is at most `target_width` wide, or as wide as `ROUNDS` leave it. Ctrl-C returns that of the last
-    program, if one was solved, with status ``budget``.
+    Their bracket is at most `target_width` wide, or as wide as after `ROUNDS` programs. Ctrl-C returns that of the
+    last program, if one was solved, with status ``budget``.
     """
     dead = system.under_dead_load()
     rests, known = _resting(dead, joints)
@@ -197,7 +197,7 @@ def _width(system: Equilibrium, found: ForceSolution) -> float:
 
 
 def _best_bounds(program: InnerProgram, forces: Array | None, motion: Array | None) -> ForceSolution | None:
-    """Combine the best bounds of repaired forces and mechanism, if there are any, and of HiGHS; None if HiGHS fails."""
+    """The better of HiGHS's bounds and those of repaired forces and mechanism, if any; None if HiGHS fails."""
     system, found = program.system, program.vertex()
     if found.status != "optimal":
         return None

@@ -25,13 +25,13 @@ from runningbond.joints import wall_cones
 from runningbond.scene import Array, Indices, Scene
 
 SHORT_ARC = 0.1
-"""Length of an arc, relative to α and β, up to which quadrature is exact to rounding and closed forms are not."""
+"""Range of α on an arc, relative to hypot(α, β/√C_ss), up to which quadrature is exact and closed forms are not."""
 
 TINY = 1e-14
 """Differences of α, and slips, relative to the largest jump, that count as zero."""
 
 STRONGEST = 1e9
-"""Strength of a joint, in force units, above which it is taken never to crush: it would swamp the other joints."""
+"""Strength of a joint, in force units, above which it is assumed never to crush: it would swamp the other joints."""
 
 NODES, WEIGHTS = ((part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(8), (1, 0), strict=True))
 
@@ -107,7 +107,7 @@ class Crushing:
     def blocks(self, share: Array) -> Array:
         """Forces of stress blocks that occupy shares ``(k,)`` of a joint from either end, ``(3, n)``, joint by joint.
 
-        A block is under pure pressure or, with shear, at corner B; the rest of the joint is at the tension cut-off.
+        A stress block is at pressure f_m or, with shear, at corner B; the rest of the joint is at the tension cut-off.
         """
         end, other = share - share**2 / 2, share**2 / 2
         found = []

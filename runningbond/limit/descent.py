@@ -1,8 +1,8 @@
 """Descent from one certificate of collapse to certificates at smaller loads.
 
 The forces of a certificate drive not only its mechanism but a cone of them: all that open only where the forces vanish
-and slide only where they are at the limit. With another mechanism of that cone they are a certificate as well, whose
-smallest load is equal or smaller. Mechanisms at the cone's edges move the fewest points and constrain forces least.
+and slide only where they are at the limit. With another mechanism of that cone, whose smallest load is not larger, they
+are a certificate as well. Mechanisms at the cone's edges move the fewest points and constrain forces least.
 """
 
 from collections.abc import Iterator
@@ -18,16 +18,16 @@ from .force_program import ForceSolution
 from .programs import Programs
 
 MAX_FAILURES = 3
-"""Consecutive mechanisms without a lower load after which the descent from a certificate ends."""
+"""Number of consecutive mechanisms without a lower load after which the descent from a certificate ends."""
 
 MAX_WALK_FAILURES = 12
-"""Consecutive steps without a lower load after which a walk ends."""
+"""Number of consecutive steps without a lower load after which a walk ends."""
 
 WALK_PIVOTS = 200
 """Largest number of simplex pivots in one step of a walk over forces."""
 
 LOWER_TOLERANCE = 1e-7
-"""Difference, relative to the larger of the multiplier and 1, from which a certificate counts as lower."""
+"""Difference, relative to the larger of the multiplier and 1, above which a certificate counts as lower."""
 
 
 @dataclass(eq=False)
@@ -52,7 +52,7 @@ class Descent:
         return self.known[pattern]
 
     def around(self, best: Certificate, rng: np.random.Generator) -> Iterator[Certificate]:
-        """Certificates at ever smaller loads, by a walk over mechanisms that random forces on the last one drive."""
+        """Certificates at ever smaller loads, by a walk; random forces on one mechanism drive the next one, too."""
         motion, failures = best.motion, 0
         while failures < MAX_WALK_FAILURES:
             failures += 1
@@ -70,7 +70,7 @@ class Descent:
                 motion = stepped
 
     def _stepped(self, motion: Array, rng: np.random.Generator) -> tuple[Array | None, ForceSolution | None]:
-        """A mechanism driven by random forces that also drive another one ``(nd,)``, and these forces."""
+        """A mechanism driven by random forces that also drive the given one ``(nd,)``, and these forces."""
         driving = driving_forces(self.system, motion)
         if driving is None:
             return None, None
@@ -97,7 +97,7 @@ class Descent:
 
 
 def jump_pattern(system: Equilibrium, motion: Array) -> bytes:
-    """Pattern of where a mechanism ``(nd,)`` opens and slides, on which alone its loads depend."""
+    """Signs of a mechanism's ``(nd,)`` jumps and tie elongations; its loads depend on nothing else."""
     least = NO_JUMP * float(np.abs(motion).max(initial=0.0))
     jumps = np.concatenate([*system.jumps(motion), system.elongation(motion)])
     return bytes((np.sign(jumps) * (np.abs(jumps) > least)).astype(np.int8))

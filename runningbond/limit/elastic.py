@@ -11,14 +11,14 @@ from runningbond.scene import Array, Scene
 from .kinematics import jump_operator, live_load, movable_freedoms, pin_operator
 
 SINGULAR = 1e9
-"""Motion, relative to that of a single spring of the largest stiffness, above which blocks count as loose."""
+"""Motion, relative to that of the stiffest spring under the largest load, above which blocks count as loose."""
 
 
 def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
-    """Largest displacement of a block [m] under the live load alone, while joints neither open nor slip.
+    """Largest x or y displacement of a centroid [m] under the live load only, while joints neither open nor slip.
 
-    A lower bound of the displacement at collapse, deformable blocks included. None if a joint has no stiffness or the
-    pins leave such a wall loose.
+    A lower bound of the displacement at collapse; it includes the compliance of deformable blocks. None if a joint has
+    no stiffness or if the pins leave blocks loose.
     """
     if any(each.elasticity is None for each in scene.materials_of_joints):
         return None

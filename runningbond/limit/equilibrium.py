@@ -4,8 +4,8 @@
 
 with point forces f (tension positive), pulls 0 ≤ N ≤ yield force of ties and reactions r of pinned points. Preload and
 stiffness of a tie do not influence what it can carry. Lengths are measured in block sizes, forces in the largest dead
-load (for a weightless wall, in the strongest joint point), the live load in its largest entry, and each block's
-equations in its share of the largest block. A wall of any size, density and unit of load thus yields the same numbers.
+load (for a weightless wall, in the strongest joint point or tie), the live load in its largest entry, and each block's
+equations in its share of the largest block's area. So size, density and unit of load do not change the numbers.
 """
 
 from dataclasses import dataclass, replace
@@ -46,8 +46,8 @@ class Equilibrium:
     force_unit, live_unit : float
         Force [N] and multiplier λ that count as 1.
     scale : (nd,) float
-        Factor of each equation, from the block's own weight, and for moments also its size; without it the solver's
-        tolerance would hide the balance of small blocks beside large ones.
+        Factor of each equation, from the block's area relative to the largest and, for moments, also its size; without
+        it the solver's tolerance would hide the balance of small blocks beside large ones.
     crushing
         Joints of finite compressive strength, if they are taken into account (`with_crushing`).
     """
@@ -79,7 +79,7 @@ class Equilibrium:
 
     @property
     def least(self) -> float:
-        """Lower bound of the multiplier: zero for loads, which keep their sense; none for supports that move."""
+        """Lower bound of the multiplier: zero for loads, which keep their sense; −inf for moving supports."""
         return -np.inf if self.has_support else 0.0
 
     def load(self, multiplier: float) -> float:
@@ -110,7 +110,7 @@ class Equilibrium:
         return np.asarray(self._rates[2] @ multipliers)
 
     def with_crushing(self) -> "Equilibrium":
-        """The same equations with crushing joints; without weight the strongest such joint is the force unit."""
+        """The same equations with crushing joints; without dead load the strongest such joint is the force unit."""
         if self.dead.any():
             return replace(self, crushing=crushing(self.scene, self.force_unit))
         joints = crushing(self.scene, self.force_unit, np.inf)
@@ -128,9 +128,9 @@ class Equilibrium:
         return np.array([*opening[ends], slip[ends[0]]])
 
     def dissipation(self, motion: Array) -> Array:
-        """Largest power of admissible forces on a mechanism ``(nd,)``, by points; of crushing joints at their first.
+        """Largest power ``(np,)`` of admissible forces at each point on a mechanism ``(nd,)``.
 
-        Other points have to obey the flow rule.
+        That of a crushing joint is assigned to its first point. Other points have to obey the flow rule.
         """
         found = self.strength.dissipation(*self.jumps(motion))
         if self.crushing is not None:
@@ -169,8 +169,8 @@ class Equilibrium:
         """The equations while λ grows: with motions held under the live load only, and with a moving support.
 
         A moving support adds an equation, the virtual work of the forces on it per unit displacement. Its live load is
-        the resultant of the dead load, and λ the share of it that drives the support along its motion. The support
-        carries −λ.
+        the resultant of the dead load, and the multiplier the share of it that drives the support along its motion;
+        the support carries the negative of this share (`load`).
         """
         scene, late = self.scene, self.scene.late_pins
         system = self

@@ -42,7 +42,7 @@ class ForceSet:
     slopes : sequence of (np,) float
         Slopes f_t / p of each ray at each point.
     most : sequence of (np,) float
-        Largest p on each ray at each point; inf if the ray is unbounded, 0 if it is not available.
+        Largest p on each ray at each point; inf if the ray is unbounded, 0 if it carries nothing.
     shear_low, shear_high : (np,) float
         Bounds of s.
     tie_low, tie_high : (nt,) float or None
@@ -115,7 +115,7 @@ class ForceSolution:
 
 
 def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> dict[str, Any]:
-    """Arguments of `scipy.optimize.linprog` for the multiplier that forces of a set can balance."""
+    """Arguments of `scipy.optimize.linprog` for the largest or smallest multiplier that forces of a set can balance."""
     rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in forces.slopes]
     shear = [system.slip] if forces.has_shear else []
     others = [*shear, system.tie, system.reaction, csc_array(-system.live[:, None])]
@@ -201,10 +201,10 @@ def _solved(program: dict[str, Any], method: str) -> tuple[ProgramStatus, Optimi
 
 
 def _least_unbalanced(program: dict[str, Any], method: str) -> tuple[ProgramStatus, OptimizeResult]:
-    """Whether forces balance the load, decided by the forces that leave the smallest part of it unbalanced.
+    """Whether forces balance the load, decided by minimising the sum of unbalanced forces.
 
-    This program always has forces and a mechanism; HiGHS fails on programs without any. With a tan φ of 1e6 it cannot
-    decide whether a wall rests on its corners; here whole weights remain unbalanced if it does not.
+    This program always has a solution, whereas HiGHS may fail on programs without one. With a tan φ of 1e6 it cannot
+    decide whether a wall rests on its corners; here whole weights remain unbalanced if the wall does not.
     """
     n_equations, n = program["A_eq"].shape
     unbalanced = identity(n_equations, format="csc")

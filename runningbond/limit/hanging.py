@@ -1,4 +1,4 @@
-"""Displacement of a wall before it collapses: on the springs of its joints, and while it hangs on its ties.
+"""Displacement of a wall before it collapses: from the elasticity of its joints, and from the stretch of its ties.
 
 Joints of a tied wall open long before the ties yield. Each load increment then moves the wall by the stretch of the
 ties, magnified by the lever arms of its mechanism: with a flexible bar a slender wall may sway by many times the
@@ -27,7 +27,7 @@ def hanging_displacement(scene: Scene) -> float:
     """Displacement of the fastest corner [m] in the associated mechanism until its ties yield; 0 without such ties.
 
     The mechanism of the wall without ties counts instead if its displacement is larger, because ties may hold the wall
-    until it fails elsewhere. Ties that yield one after another are weighted by the work they absorb. Ctrl-C is raised.
+    until it fails elsewhere. The displacements at which ties yield are averaged, weighted by their work. Ctrl-C raises.
     """
     if not len(scene.ties):
         return 0.0

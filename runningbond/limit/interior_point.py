@@ -33,8 +33,8 @@ ROUGH_TOLERANCE = 1e-6
 """Relative tolerance of programs that only update pressures, and of those that check whether forces exist."""
 
 FAER_EQUATIONS = 20_000
-"""Equations above which supernodal factorisation (faer) pays; for 60 000 it takes a third of the time of a simple
-one."""
+"""Number of equations above which supernodal factorisation (faer) is used; for 60 000 it takes a third of the time of a
+simple one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class InteriorPoint:
     slack : (n,) float
         Reduced costs c − Aᵀ y according to the solver; not negative for forces within bounds.
     compliance : (n,) float
-        Distance of each force from its bounds over that of its point from closing, normalised: 1 in the middle.
+        Distance of each force from its bounds over that of its point from closing, scaled by largest force and motion.
     interrupted
         Whether Ctrl-C ended the iteration.
     """
@@ -105,7 +105,7 @@ def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: boo
 
 
 def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSolution:
-    """Forces of a set near those at the largest or smallest load, and near balance."""
+    """Approximate forces of a set at the largest or smallest load; they are only nearly balanced."""
     point = interior_point(force_program(system, forces, aim), ROUGH_TOLERANCE)
     return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
 
@@ -122,7 +122,7 @@ def _listeners() -> dict[int, Callable[[int, FrameType | None], Any]]:
 def _ended_by_signals(solver: Any) -> Iterator[list[int]]:
     """Let Ctrl-C and SIGTERM, which the solver would ignore, end it after its current iteration.
 
-    The handler of the first of them is called afterwards.
+    The replaced handler of the first signal is called afterwards; its KeyboardInterrupt is suppressed.
     """
     received, listeners = list[int](), _listeners()
     if not listeners:

@@ -12,7 +12,7 @@ from scipy.sparse import coo_array, csr_array, vstack
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.scene import ANCHOR, Array, Indices, Pins, Scene
 
-NO_SLIP = 1e-6  # slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m
+NO_SLIP = 1e-6  # slip [m] that counts as zero in a mechanism whose fastest corner moves by 1 m
 
 
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
@@ -55,7 +55,7 @@ def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
 
 
 def tie_ends(scene: Scene) -> csr_array:
-    """Elongation of ties by their first ends alone, then by their second ends, ``(2 nt, 3 nb)``; zero for anchors."""
+    """Elongation of ties by motion of their first, then of their second ends, ``(2 nt, 3 nb)``; zero for anchors."""
     ties, ends = scene.ties, []
     for end, sense in enumerate((-1.0, 1.0)):
         held = ties.block[:, end] != ANCHOR

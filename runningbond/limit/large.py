@@ -2,8 +2,8 @@
 
 For programs of more than some thousand points, going on from vertex to vertex takes longer than a fresh start, and the
 simplex method may never detect that no forces exist. Programs that update pressures are therefore solved by Clarabel to
-a rough tolerance. Their mechanisms mix all those that collapse at the same load. A vertex is computed, by HiGHS, only
-where it is cheap or promising:
+a rough tolerance. Each solution mixes all mechanisms of the same load. A vertex is computed, by HiGHS, only where it is
+cheap or promising:
 
 - in the wall glued wherever its blocks barely move against each other (`macro`), which leaves some hundred degrees of
   freedom. Pressures that are updated slowly pass many such mechanisms of few parts;
@@ -27,7 +27,7 @@ from .search_log import Observer, SearchLog
 from .sequences import averaged
 
 LARGE_POINTS = 4500
-"""Number of joint points, about six per block, from which a wall is searched in this way."""
+"""Number of joint points, about six per block, from which a wall is searched as described above."""
 
 STILL_LEVELS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
 """Levels of jumps, relative to the largest motion, below which points count as still when blocks are glued, in turn."""
@@ -36,10 +36,10 @@ VERTEX_FREEDOMS = 700
 """Largest number of degrees of freedom of a glued wall whose vertex is computed."""
 
 MIX_TOLERANCE = 1e-4
-"""Jumps of a mix of mechanisms, relative to its largest motion, that its vertex need not have."""
+"""Jumps of a mix of mechanisms, relative to its largest motion, up to which they count as zero."""
 
 SLOW, AT_ONCE = (0.3, range(2, 4)), (1.0, range(4, 40))
-"""Weight of new pressures, and programs whose mechanisms are examined, of the sequence that glues and of the other."""
+"""Weight of new pressures and programs whose mechanisms are examined, of the sequence that glues and of the other."""
 
 
 def takes_one_start(system: Equilibrium) -> bool:
@@ -48,7 +48,7 @@ def takes_one_start(system: Equilibrium) -> bool:
 
 
 def search_large(system: Equilibrium, place: Array, observe: Observer) -> SearchLog:
-    """Run both sequences from the associated pressures, until a certificate is found or Ctrl-C; loads are approximate.
+    """Run the sequences from the associated pressures until a certificate, with approximate loads, is found or Ctrl-C.
 
     `place` are the centroids of the movable blocks ``(n, 2)`` [m].
     """

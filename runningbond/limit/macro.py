@@ -1,7 +1,7 @@
 """Macro-blocks: blocks that move together are glued into one, which leaves fewer equations and joint points.
 
 A mechanism of the glued wall is also a mechanism of the full wall, at the same load. Forces in the glued wall balance
-each macro-block; they do not determine the forces inside it.
+each macro-block, but say nothing about forces inside it.
 """
 
 from collections.abc import Sequence
@@ -93,7 +93,7 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
 
 
 def freest(system: Equilibrium, place: Array, looseness: Array, levels: Sequence[float], freedoms: int) -> Glued | None:
-    """Glue points with `looseness` below the lowest of the falling `levels` that leaves at most so many freedoms."""
+    """Glue points with `looseness` below the lowest of descending `levels` that leaves 1 to `freedoms`; else None."""
     low, high, result = 0, len(levels), None
     while low < high:  # fewer glued points leave more degrees of freedom
         middle = (low + high) // 2
@@ -106,7 +106,7 @@ def freest(system: Equilibrium, place: Array, looseness: Array, levels: Sequence
 
 
 def sides(system: Equilibrium) -> tuple[Indices, Indices]:
-    """Movable blocks on both sides of each point, in ascending order; their number stands for fixed blocks."""
+    """Indices among the n movable blocks of those on both sides of each point, ascending; n for a fixed block."""
     pattern = csc_array(abs(system.opening) + abs(system.slip))
     pattern.sort_indices()
     begin, end = pattern.indptr[:-1], pattern.indptr[1:]

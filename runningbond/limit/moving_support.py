@@ -1,4 +1,4 @@
-"""Verdicts on a moving support: what share of the wall it still carries, or that the wall stands without it.
+"""Verdicts on a moving support: what share of the dead load it still carries, or that the wall stands without it.
 
 As the support moves away, its reaction falls to the smallest value that admissible forces balance, with the mechanism
 of that minimum (Portioli & Cascini 2017). The theorems hold with exchanged roles: admissible forces bound the smallest
@@ -26,7 +26,7 @@ JAMMED = "self-locking: the wall holds the support against any force that drives
 def may_leave(system: Equilibrium) -> bool:
     """Whether the support can leave the wall at rest, without moving any block.
 
-    This is so if it runs into no block, opens the joints that it slides on, and breaks neither joints nor ties.
+    This is so if it closes no joint, opens the joints that it slides on, and breaks neither joints nor ties.
     """
     opening, slip = (rows[[-1]].toarray()[0] for rows in (system.opening, system.slip))
     if (opening < system.strength.friction * np.abs(slip) - ZERO_SHARE).any():
@@ -44,7 +44,7 @@ def is_bridged(system: Equilibrium, share: float) -> bool:
 
 
 def bridges_without_friction(system: Equilibrium) -> bool:
-    """Whether normal forces alone balance the dead load without the support; friction cannot upset such a wall."""
+    """Whether frictionless forces balance the dead load without the support; such a wall stands with any friction."""
     nothing = np.zeros(len(system.points))
     dry = PointStrength(nothing, nothing, nothing)
     return solve_forces(system, frozen_friction(dry, nothing), "zero").status == "optimal"

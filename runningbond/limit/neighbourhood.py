@@ -28,9 +28,9 @@ DISTANCE_DECIMALS = 6
 
 
 def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask, freedoms: int) -> Glued | None:
-    """Glue the wall except at moving points ``(np,)`` and near centres, leaving at most so many freedoms; None if none.
+    """Glue the wall except at moving points ``(np,)`` and as near `centres` ``(np,)`` as at most `freedoms` allow.
 
-    Distance is measured between blocks, whose centroids are at `place` ``(n, 2)`` [m].
+    None if there is no such wall. Distance is measured between blocks, whose centroids are at `place` ``(n, 2)`` [m].
     """
     of_centres = np.unique([side[centres] for side in sides(system)])
     distance = distances(system, place, place[of_centres[of_centres < len(place)]])
@@ -57,7 +57,7 @@ def certificates_near(
 ) -> Iterator[Certificate]:
     """Certificates of a glued wall, found by its `programs` from a certificate that moves none of the glued joints.
 
-    They come from walks from that certificate, from so many `sequences`, and from walks from the lowest one found.
+    They come from a walk from that certificate, from so many `sequences`, and from a walk from the lowest one found.
     """
     known = glued.certificate(certificate)
     descent, pressure, found = Descent(programs), known.least.pressure, list[Certificate]()

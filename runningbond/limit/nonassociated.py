@@ -45,9 +45,9 @@ def limit_nonassociated(
         The scene, and the required relative width of the interval. A wider interval is still reported, because the load
         itself is not unique.
     starts, workers
-        Largest number of starts of the search, over the wall or, for larger walls, to find its parts, and number of
-        starts run in parallel where possible, which does not change the result. Fewer are made if the last ones found
-        no smaller load, and only one for very large walls.
+        Largest number of starts of the search (for larger walls, of sequences that find parts of the wall), and number
+        of starts run in parallel where possible; the latter does not change the result. Fewer starts are made if the
+        last ones found no smaller load, and only one for very large walls.
     programs
         Number of linear programs after which no further start is made; those over parts of the wall count by their
         cost. By default as many as take up to three quarters of a minute on walls of 150 to 600 blocks.
@@ -72,7 +72,7 @@ def limit_nonassociated(
     Notes
     -----
     A wall whose normal forces balance any multiple of the live load is proved to be ``unbounded``: no mechanism without
-    interpenetration gains power from the load. If friction is needed for that, Coulomb's law allows rest at every
+    interpenetration gains power from the load. If that balance needs friction, Coulomb's law allows rest at every
     multiple, but perhaps also a collapse, driven by other forces. Such a wall is ``unbounded`` if no collapse was
     certified and friction grew with the load in every program; the message states what is not proved.
     """
@@ -110,7 +110,7 @@ def _collapse(
     tolerance: float,
     look: Callable[[Equilibrium, Array], SearchLog],
 ) -> Outcome:
-    """Outcome of a wall that stands; mechanisms that dissipate energy at strengths that were cut are rejected."""
+    """Outcome of a wall that stands; mechanisms that dissipate energy at reduced strengths are rejected."""
     cut = state.system
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
@@ -166,7 +166,7 @@ def _associated(system: Equilibrium) -> ForceSolution:
 def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: SearchLog) -> list[Certificate]:
     """Certificates by smallest load, the lowest and highest one proved on the unrounded equations.
 
-    Those that cannot be proved there, or dissipate energy at strengths cut from `full`, are left out.
+    Those that fail there, or dissipate at strengths reduced from `full`, are left out; those in between stay as found.
     """
     certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
     certificates = [each for each in certificates if not uses_cut_strength(full, system, each.motion, dilatancy=0.0)]

@@ -30,11 +30,11 @@ NO_FORCE = 1e-7
 
 
 MOST_PIVOTS = 800
-"""Simplex pivots after which loads that drive a mechanism are given up, or accepted as they are."""
+"""Simplex pivots after which the search for loads that drive a mechanism ends, with the forces found so far, if any."""
 
 SEQUENCE_PIVOTS = 5_000
-"""Simplex pivots between two programs of a sequence after which interior point and crossover take over; in walls of 600
-blocks so many pivots take longer than they do."""
+"""Simplex pivots in one program of a sequence after which interior point and crossover solve it; in walls of 600 blocks
+they take less time than so many pivots."""
 
 Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
 """Vertices from which the models of `Programs` start; None starts without one."""
@@ -72,7 +72,7 @@ class Programs:
         return [each.corner for each in self._models]
 
     def go_to(self, corners: Corners) -> None:
-        """Start from such vertices, independently of all programs solved before."""
+        """Start from these vertices, independently of all programs solved before."""
         for model, corner in zip(self._models, corners, strict=True):
             model.go_to(corner)
 
@@ -100,7 +100,7 @@ class Programs:
     ) -> ForceSolution:
         """Vertex of a set with the smallest sum of weighted pressures, weights ``(np,)``, or one on the way there.
 
-        The forces balance the given `multiplier` or, without one, any, starting from the last vertex.
+        The forces balance the load at the given `multiplier` or, without one, at any; it starts from the last vertex.
         """
         return self._solved(self._driven, forces, weights=weights, multiplier=multiplier, method=PRIMAL, pivots=pivots)
 

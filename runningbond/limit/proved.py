@@ -1,6 +1,6 @@
 """Associated limit analysis of large walls: an interior point, and the proof derived from its result.
 
-HiGHS computes an exact vertex, as fast as the interior point up to some two hundred blocks; beyond, its cost grows
+HiGHS computes an exact vertex, as fast as the interior point for up to some two hundred blocks; for more its cost grows
 faster.
 """
 
@@ -68,11 +68,11 @@ def fall_at_rest(system: Equilibrium, point: InteriorPoint) -> Array | None:
 
 
 def proved(system: Equilibrium, resting: Array | None, tolerance: float | None = None) -> ForceSolution:
-    """Solve the associated limit analysis; the status is ``optimal`` for exact forces and mechanism only.
+    """Solve the associated limit analysis; the status is ``optimal`` only if forces and mechanism are exact.
 
-    Ctrl-C returns approximate ones, if there are any, with status ``budget``. `resting` are forces of the same system
-    before its live load (`Equilibrium.under_dead_load`); `tolerance` is that of the interior point, by default from
-    `STOP` by the size of the wall.
+    Ctrl-C returns those derived from the last iterate, if any, with status ``budget``. `resting` are forces of the same
+    system before its live load (`Equilibrium.under_dead_load`); `tolerance` is that of the interior point, by default
+    from `STOP` by the size of the wall.
     """
     tolerance = STOP[tolerance_of(system)] if tolerance is None else tolerance
     forces = coulomb(system.strength)
@@ -108,8 +108,7 @@ def tolerance_of(system: Equilibrium) -> float:
 def loaded(system: Equilibrium, program: dict[str, Any], resting: Array) -> Array:
     """Convert forces of the wall at rest to unknowns of a program of the system under its live load.
 
-    Motions that are held later have no reaction yet; for a moving support the multiplier is what it carries of these
-    forces.
+    Motions held under the live load only have no reaction yet; a moving support's multiplier balances its equation.
     """
     late = system.reaction.shape[1] - len(system.scene.pins)
     forces = np.concatenate([resting[:-1], np.zeros(late), [0.0]])

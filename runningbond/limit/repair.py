@@ -39,7 +39,7 @@ Solve = Callable[[Array], tuple[Array, float]]
 
 
 def metric(program: dict[str, Any], weights: Array) -> Solve:
-    """Factorise A W Aᵀ, bordered by the column of the multiplier, the last one, which takes what no force balances.
+    """Factorise A W Aᵀ, bordered by the last column, that of the multiplier, which balances what the forces cannot.
 
     The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ; to NaN if singular.
     """

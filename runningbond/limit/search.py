@@ -26,13 +26,13 @@ STARTS = 160
 """Largest number of starts."""
 
 MAX_DRY_STARTS = 2 * ROUND * len(ORIGINS)
-"""Consecutive starts without a lower load after which the search ends: every kind of start twice."""
+"""Number of consecutive starts without a lower load after which the search ends: every kind of start twice."""
 
 AFFORDED_POINTS = 22_000
 """Joint points up to which one program beyond 20 is allowed; programs cost as the power of 2.5 of the points."""
 
 PATIENT_POINTS = 2500
-"""Joint points from which the interior point decides, at once, on mechanisms that the simplex method gives up."""
+"""Joint points from which the interior point decides on mechanisms where the simplex method ends without a result."""
 
 
 def programs_allowed(system: Equilibrium) -> int:
@@ -41,7 +41,7 @@ def programs_allowed(system: Equilibrium) -> int:
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Consecutive starts without a lower load after which the search ends: fewer for walls of few freedoms."""
+    """Number of consecutive starts without a lower load that ends the search: smaller for walls of few freedoms."""
     return min(MAX_DRY_STARTS, max(8, 2 * system.freedoms))
 
 
@@ -58,8 +58,8 @@ def search(
     """Search for certificates from many seeded starts; a keyboard interrupt keeps those that were found.
 
     `observe` is called after every round; `workers` starts run in parallel, and none begins after `most` linear
-    programs (by default `programs_allowed`). The results are added to those `found` before. If the centroids of movable
-    blocks are given as `place` ``(n, 2)`` [m], neighbourhoods are searched, too.
+    programs (by default `programs_allowed` more). The results are added to those `found` before. If the centroids of
+    movable blocks are given as `place` ``(n, 2)`` [m], neighbourhoods are searched, too.
     """
     found = SearchLog() if found is None else found
     found.dry, made, stopped = 0, 0, Event()
@@ -90,7 +90,7 @@ def search(
         if found.dry >= dry_allowed(system) or found.cost > most:
             if patient or found.certificates:
                 break
-            patient = True  # the mechanisms that were given up may be the only ones
+            patient = True  # mechanisms left undecided by the simplex method may be the only ones
             known.clear()
     return found
 

@@ -15,13 +15,13 @@ class SearchLog:
     Parameters
     ----------
     certificates
-        Every collapse that was proved.
+        Every certificate found; in large walls some have approximate loads.
     starts, programs
         Number of starts, and of linear programs solved.
     cost
         Cost of these programs in programs of the full wall; those of glued walls cost less.
     dry
-        Number of consecutive last starts that found no lower load.
+        Number of consecutive starts, up to the last one, that found no lower load.
     frictionless
         Whether normal forces alone carry any multiple of the live load.
     growing

@@ -29,7 +29,7 @@ def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> I
             return
         known = len(descent.known)
         if descent.least(program.motion) is not None:
-            if len(descent.known) > known:  # otherwise the search has continued from it before
+            if len(descent.known) > known:  # otherwise the search has already continued from this mechanism
                 certificate = certified(descent, program.motion)
                 if certificate is not None:
                     yield certificate

@@ -8,7 +8,7 @@ from .kinematics import dead_load
 
 
 def reaction_unit(scene: Scene) -> float:
-    """Unit [J] in which the work of a moving support's reaction, against its motion at λ = 1, is the share λ.
+    """Work [J] that equals a share of 1: of a moving support's reaction against the support's motion at λ = 1.
 
     It is the resultant of all dead loads on movable blocks times the largest displacement of a joint end on the
     support.

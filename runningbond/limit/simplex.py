@@ -29,7 +29,7 @@ OPTIONS: dict[str, bool | int | float | str] = {
 }
 
 LARGE_COEFFICIENT, FINE_TOLERANCE = 1e4, 1e-9
-"""Largest coefficient above which HiGHS's tolerances are finer than 1e-7, for a small block's forces on a huge one."""
+"""Coefficient above which this tolerance replaces HiGHS's 1e-7, to resolve a small block's forces on a huge one."""
 
 _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
     highspy.HighsModelStatus.kOptimal: "optimal",
@@ -42,13 +42,13 @@ _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
 class _Quiet(highspy.Highs):
     """HiGHS without output: version 1.16 prints a banner to standard output before an option can be set."""
 
-    def enableCallbacks(self) -> None:  # noqa: N802 - HiGHS's own name, of the last call that its making takes
+    def enableCallbacks(self) -> None:  # noqa: N802 - HiGHS's own name; its constructor calls this last
         self.setOptionValue("output_flag", False)
         super().enableCallbacks()  # type: ignore[no-untyped-call]
 
 
 class Simplex:
-    """min c·x, A x = b, low ≤ x ≤ high; all programs share the matrix ``(m, n)`` and right-hand side ``(m,)``."""
+    """min c·x, A x = b, low ≤ x ≤ high; all programs have the same matrix ``(m, n)`` and right-hand side ``(m,)``."""
 
     def __init__(self, matrix: csc_array, right: Array) -> None:
         rows, self._size = matrix.shape

@@ -32,7 +32,7 @@ START_PIVOTS = 400
 """Largest number of simplex pivots to the random forces that a sequence starts from."""
 
 ROUND = 4
-"""Number of starts in a round."""
+"""Number of starts in a round after the first, which is a single start."""
 
 Origin: TypeAlias = Literal["random", "balanced", "known", "neighbourhood"]
 """Initial pressures of a start: random, in balance with a random load, of a certificate, or near one."""
@@ -41,7 +41,7 @@ ORIGINS: tuple[Origin, ...] = (
     *("random", "balanced", "known", "neighbourhood"),
     *("known", "balanced", "known", "neighbourhood"),
 )
-"""Origins of the rounds, in turn."""
+"""Origins of every `ROUND` consecutive starts, in turn."""
 
 LOWEST_SHARE = 0.5
 """Probability that a start from a known certificate takes the lowest one."""
@@ -50,7 +50,7 @@ SCATTER = 0.3, 1.5
 """Range of the standard deviation of the logarithm of initial pressures, relative to a certificate's."""
 
 LOCAL, RADIUS = 0.5, (0.15, 0.6)
-"""Probability that these are scattered near one block only, and range of the radius around it, in wall sizes."""
+"""Probability that pressures are scattered near one block only, and range of the radius around it, in wall sizes."""
 
 NEIGHBOURHOOD_SIZE, NEIGHBOURHOOD_SEQUENCES = (0.15, 0.5), 3
 """Range of the degrees of freedom of a neighbourhood, relative to the wall's, and sequences run in it."""
@@ -92,7 +92,7 @@ class Start:
                 known = self.found.certificates
                 known.append(certificate)
                 known += descent.below(certificate.motion, certificate.least, rng)
-            early = self.number <= ROUND  # so early the lowest certificate is no better a start of a walk than others
+            early = self.number <= ROUND  # early walks from the lowest certificate are no better than from others
             if early or not self.before or is_lower(self.found.lowest, self.before[0].least.multiplier):
                 best = self.found.best
                 self.found.certificates += () if best is None else descent.around(best, rng)
@@ -157,9 +157,9 @@ class Start:
     def _pressure(self, descent: Descent) -> Array:
         """Initial pressures ``(np,)``.
 
-        Those of the associated solution, or of the dead load if that is unbounded, for the first three starts; then by
-        rounds: random ones; those of random forces that balance random loads or, if these are more than `START_PIVOTS`
-        away, random multiples of the associated ones; random multiples of a certificate's.
+        For the first three starts those of the associated solution or, if that is unbounded, of forces under the dead
+        load. Then by origin: random ones; those of random forces that balance random loads or, if `START_PIVOTS` do not
+        reach any, random multiples of the associated ones; random multiples of a certificate's.
         """
         system, bounded = descent.system, self.associated.status == "optimal"
         if self.number <= 2:

@@ -1,4 +1,4 @@
-"""Models at finite displacements, if the user requests these in addition to a model's name."""
+"""Models set to finite displacements, which a user may request in addition to a model's name."""
 
 from dataclasses import replace
 from functools import partial

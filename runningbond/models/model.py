@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Kind: TypeAlias = Literal["estimate", "bound", "certificate", "history"]
 """Meaning of a model's multiplier: `bound` is a proven upper bound, `certificate` an interval of loads at which
-collapse is proved possible, `history` the collapse load of a wall whose loading path is followed up to collapse."""
+collapse is proved possible, `history` the collapse load of a wall whose load path is followed up to collapse."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Cost:
     growth: float  # exponent of the number of blocks
     spread: float  # factor about the law within which two thirds of the walls lie
     weightless: float = 1.0  # factor for walls without weight
-    finer: float = 0.0  # exponent of the tolerance; 0 for a model without bisection
+    finer: float = 0.0  # exponent of 1 / tolerance; 0 for a model without bisection
     start: float = 0.0  # seconds for a wall of any size, for example to load compiled kernels
     cracked: float = 1.0  # factor for walls whose blocks may crack,
     softened: float = 1.0  # for walls whose joints soften,

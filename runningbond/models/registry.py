@@ -40,10 +40,10 @@ ELASTIC = MOTION | {"block.young", "block.poisson"}
 
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
 EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # features (`Scene.extras`) of static models,
-FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and of models that follow a loading path
-KERNELS = 0.3  # seconds to load the compiled kernels of models that follow a loading path
+FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and of models that follow a load path
+KERNELS = 0.3  # seconds to load the compiled kernels of models that follow a load path
 TOLERANCE = 0.01  # default relative width of the bracket
-FAR_MOTION = 0.02  # limit of small motions, in the wall's smaller side: toppling loses this share of its resistance
+FAR_MOTION = 0.02  # limit of small motions, per smaller side of the wall: toppling resistance falls by this share
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model with load steps
 OF_RESPONSES = ("points", "after", "rows", "observe")  # settings of every response
 OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # for deformable blocks
@@ -341,14 +341,14 @@ def check_response(
 
 
 def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings: Any) -> "Response":
-    """Compute the response of a scene to its ground motion times `scale`; settings as for `follow`.
+    """Compute the response of a scene to its ground motion times `scale`; settings as for `response.follow`.
 
     The response's message ends with the keys of the scene that the model does not take into account.
 
     Raises
     ------
     SceneError
-        As in `check_response`.
+        As in `check_response`, and for unknown settings.
     """
     follow = check_response(model, scene, scale)
     own = OF_RESPONSES if find_model(model) is not MODELS["fem"] else (*OF_RESPONSES, "cells", "modes")

@@ -37,7 +37,7 @@ Solver: TypeAlias = Callable[[], Outcome]
 
 
 def asks_others(scene: Scene, settings: Mapping[str, Any]) -> bool:
-    """Whether other models are run: if the blocks of some material are soft, and all `DEFAULTS` settings are kept.
+    """Whether other models are run: if a wall of only the softest blocks is soft, and all settings are `DEFAULTS`.
 
     With prescribed displacements of supports or a beam, or with ground motion, there is no bracket to compare.
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SIZE_FACTORS, MAX_REDUCTION = (1.0, 0.85, 0.7), 1.7
-"""Size factors tried in turn for type and arrows, until annotations reduce the wall's drawn size by less than this."""
+"""Size factors tried in turn for type and arrows, and factor below which the wall's reduction on paper is accepted."""
 
 REDUCTION_LIMIT = 20.0
 """Factor beyond which the wall's drawn size is not reduced further, even if annotations are cut off."""
@@ -33,7 +33,7 @@ class Room:
     extent
         Part of the plane that the drawing shows.
     point
-        Metres in the drawing per typographic point of the type at its reduced size, or somewhat more.
+        Metres in the drawing per nominal point of type, which is drawn smaller by `share`; or somewhat more.
     share
         Size of type and arrows relative to their usual size.
     """

@@ -60,7 +60,7 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
         path_effects=[withStroke(linewidth=2.0, foreground="white")],
     )
     _draw_states(axes, scene, outcome)
-    if scene.is_led or _rests(outcome).any():  # else it is pushed far: its fall must stay visible
+    if scene.is_led or _rests(outcome).any():  # else it is pushed far, and its fall must stay visible
         _bend(axes, moved, load)
     bottom = min(0.0, 1.12 * load.min())
     top = max(-0.05 * bottom, 1.12 * max(load.max(), *levels)) or 1.0

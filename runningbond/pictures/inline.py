@@ -12,7 +12,7 @@ from .joint_state import JointState
 from .style import AT_REST, CRUSHED, STATE_COLOURS, tint
 
 WIDTH, UNITS, SHADES, SEEN_AREA = 2.4, 700, 24, 30
-"""Width on paper [in] and in drawing units, shades per colour channel, and area up to which gaps are empty [units²]."""
+"""Width on paper [in] and in drawing units, shades per colour channel, and area of gaps above which they are filled."""
 
 
 def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
@@ -26,8 +26,8 @@ def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
 def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
     """Draw a shape within an extent as an ``svg`` element of class ``wall``, over the `inline_wall` of the same name.
 
-    Visible gaps are filled, joints that slide are dashed, hinges are circles, and crushed joint ends are crosses. The
-    undeformed outline is dashed.
+    Visible gaps are filled, joints that slide or are debonded are dashed, hinges are circles, and crushed joint ends
+    are crosses. The undeformed outline is dashed.
     """
     left, right, bottom, top = extent
     scale, rest = UNITS / (right - left), hexadecimal(AT_REST)

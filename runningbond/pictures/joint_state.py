@@ -78,9 +78,9 @@ def states_under_load(
 ) -> Indices:
     """States of joint points ``(np,)`` from their jumps [m], tractions [Pa], damage and plastic closure [m].
 
-    A point is open if its opening exceeds the elastic one at its tensile strength. It is crushed if its plastic closure
-    exceeds that at the compressive strength and `MIN_CRUSHING` of the elastic one. The scene's joints need a stiffness.
-    A point with neither traction nor opening beyond rounding sticks.
+    A point is open if its opening exceeds the elastic one at its tensile strength, or zero if its bond is broken. It is
+    crushed if its plastic closure exceeds that at the compressive strength and `MIN_CRUSHING` of the elastic one. A
+    point without traction or opening beyond rounding sticks, unless debonded. The scene's joints need a stiffness.
     """
     friction, tension, shear = wall_cones(scene, points.joint)
     stiffness, _ = wall_stiffness(scene, points.joint)

@@ -24,7 +24,7 @@ SIZES = (1.0, 0.85, 0.7, 0.55, 0.4)
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """A possible place for a label: a point ``(2,)`` [m] and the side of it, ``(±1 or 0, ±1 or 0)``."""
+    """Possible place of a label: a point ``(2,)`` [m] and its side ``(±1 or 0, ±1 or 0)``; `upright`: text runs up."""
 
     at: Array
     side: tuple[float, float]

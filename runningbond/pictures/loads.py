@@ -163,7 +163,7 @@ class LoadDrawing:
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
         size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
         direction = unit_vector(np.array(force))
-        within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # a corner has no inside around it
+        within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # all may be outside at a corner
         ahead, behind = (self._inside(within + side * 0.5 * self.a * direction) for side in (1, -1))
         self._force(self.shape.drawn_at(at, block), direction, size, colour, name, pulls=behind and not ahead)
 
@@ -199,7 +199,7 @@ class LoadDrawing:
         self.sketch.label(text, [*spots, end] if abs(direction[1]) > 0.5 else [end, *spots], colour)
 
     def _inside(self, at: Array) -> bool:
-        """Whether a point lies in the undeformed wall; the outer side of a face stays the same as the wall moves."""
+        """Whether a point lies in the undeformed wall: the outer side of a face stays the same as the wall moves."""
         found = self.scene.blocks.containing(at)
         return bool(self.scene.wall[found].any())
 

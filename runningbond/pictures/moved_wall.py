@@ -1,4 +1,4 @@
-"""A wall after a ground motion: blocks in their final positions over the wall as it was built."""
+"""A wall displaced by a ground motion: its displaced blocks over the wall as it was built."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING

@@ -105,7 +105,7 @@ class StaticRecorder(SeriesRecorder):
 
 
 class MotionRecorder(SeriesRecorder):
-    """Writes every state at rest of blocks in motion and, at the end, the fall.
+    """Writes every state at rest of blocks in motion, or every state on a prescribed path, and at the end the fall.
 
     Blocks and joint points are those of the observed run, whatever its mesh.
     """
@@ -122,7 +122,7 @@ class MotionRecorder(SeriesRecorder):
         self._led = math.inf  # steps at the last call, for prescribed displacements
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Write the state of a run if it is at rest; otherwise keep it temporarily as part of a possible fall."""
+        """Write a state at rest or on a prescribed path; otherwise keep it temporarily as part of a possible fall."""
         self._turn_to(run.system.source)
         if run.led:
             if state.steps < self._led:  # first state of a path, at rest under dead load; each slower path restarts
@@ -233,7 +233,7 @@ class MotionRecorder(SeriesRecorder):
 
 
 class ResponseRecorder(MotionRecorder):
-    """Keeps evenly spaced moments of a wall under a ground motion, and writes those of the last motion at the end."""
+    """Keeps evenly spaced moments of a wall under a ground motion, and at the end writes those at the upper scale."""
 
     def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(scene, folder)
@@ -260,7 +260,7 @@ class ResponseRecorder(MotionRecorder):
 
 
 def motion_recorder(scene: Scene, folder: Path | None) -> MotionRecorder:
-    """Recorder of a run: of the last motion under a ground motion, else of the carried loads and the fall."""
+    """Recorder of a run: of the upper scale under a ground motion, else of the carried loads and the fall."""
     return (ResponseRecorder if scene.history else MotionRecorder)(scene, folder)
 
 

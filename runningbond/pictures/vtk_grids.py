@@ -94,7 +94,7 @@ class GridBuilder:
         traction = frame.normal[:, None] * normal + frame.tangential[:, None] * tangent
         if len(frame.traction):
             traction = frame.traction
-        # For deformable blocks, the part of the jump that the rigid motions leave is split evenly between the sides.
+        # For deformable blocks, the part of the jump not due to rigid motions is split evenly between the sides.
         a, b = (_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T)
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
         # Pieces that meet at a point share its area. Only mid-lines carry it, or sums would count it three times.
@@ -162,7 +162,7 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
 
 
 def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
-    """Motion ``(nb, 3)`` of the supports in a grid of `GridBuilder.blocks`: the share reached of the scene's motion."""
+    """Motion ``(nb, 3)`` of the supports in a grid of `GridBuilder.blocks`: the scene's times the share reached."""
     corner, count = np.asarray(blocks.cell_connectivity), np.diff(blocks.cell_offsets)
     block, points = np.repeat(blocks.cell_data["block"], count), np.asarray(blocks.points)[corner, :2]
     whole = carried(scene.blocks, block, points, scene.support_motion)

@@ -27,7 +27,7 @@ from .response import MISSED, Response
 from .resting import Resting
 
 START, LARGEST_SCALE = 0.05, 50.0
-"""Peak ground acceleration, in g, at the first scale tried, and above which the search for a fall ends."""
+"""Peak ground acceleration, in g, at the first scale tried, and the one above which the search for a fall ends."""
 
 RATIO, BEYOND = 1.25, 2.0
 """Factor between successive scales, and factor beyond the first fall up to which windows are searched for."""
@@ -88,8 +88,8 @@ def critical_scale(
     -------
     Outcome
         `motion` is `Response.shape` of the fall, scaled so that the fastest corner moves by one metre. For every scale
-        tried, `curve` holds the largest displacement of the upper corners and λ, and `path` holds whether the wall
-        stood and its residual drift.
+        tried, `curve` holds the largest mean displacement of the upper corners [m] before a fall, and λ; `path` holds
+        whether the wall stood, and its residual drift.
     """
     start, rest = time.perf_counter(), Resting.of(scene, model, system)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
@@ -112,9 +112,9 @@ def critical_scale(
 
 
 def _bracket(search: ScaleSearch, first: float, most: float, tolerance: float) -> None:
-    """Increase the scale up to the first fall and beyond it, and bisect the bracket of the first fall."""
+    """Lower the scale until there is no fall, raise it to the first fall and beyond, and bisect the first bracket."""
 
-    def scale(number: int) -> float:  # always from `first`: rounding would repeat scales
+    def scale(number: int) -> float:  # not factor by factor: rounding would make equal scales differ
         return first * RATIO**number
 
     number = 0

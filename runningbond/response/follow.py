@@ -2,9 +2,9 @@
 
 A block has fallen once it is lower than at rest under its weight by half its size (`Scene.block_sizes`), or has rotated
 by more than `TURNED`. If the energy ledger misses more than the loads have supplied, the run stops, undecided unless a
-block has fallen. A wall stands once, for the duration of a rocking swing, its kinetic energy is less than would lift it
-by `RISE` of a block and does not increase, and no point moves by more than `STILL`. A wall whose energy increases to
-the end slides away, which also counts as collapse.
+block has fallen before. A wall stands if, for the duration of a rocking swing, its kinetic energy could not lift it by
+more than `RISE` of a block and does not increase, and no point moves by more than `STILL`. A wall whose energy
+increases to the end slides away, which also counts as collapse.
 """
 
 import math
@@ -29,11 +29,11 @@ TURNED = math.radians(60)
 """Rotation beyond which a block has fallen [rad]."""
 
 RISE = 1e-4
-"""Height, in block sizes, to which the kinetic energy of a wall that stands could at most lift it."""
+"""Largest height, in block sizes, to which the kinetic energy of a wall that stands could lift it."""
 
 STILL = 0.02
-"""Largest range, in block sizes, in which a point of a wall that stands may move: a block near unstable equilibrium may
-turn round so slowly that it has almost no kinetic energy, and still fall."""
+"""Largest range of motion, in block sizes, of any point of a wall that stands: a block near unstable equilibrium may
+reverse so slowly that it has almost no kinetic energy, and still fall."""
 
 DISPLACED_SWINGS = 4
 """Number of swings for which a wall must be calm if it is farther than `STILL` from where it stood; otherwise one.
@@ -43,11 +43,11 @@ equilibrium grows by the factor e^√6.
 """
 
 ROWS = 200
-"""Rows of a response per second, and per record if that is shorter, at most one per time step; `follow` accepts other
-numbers."""
+"""Rows of a response per second, or per record if that is shorter than one second; at most one per time step. `follow`
+accepts other numbers."""
 
 PART = 0.9
-"""Time step relative to the stable one: an impact gains or loses energy with the square of the step."""
+"""Time step relative to the stable one: the energy error of an impact grows with the square of the step."""
 
 SHAPE = 0.1
 """Largest corner displacement, relative to the size of the wall, at the moment whose shape a response keeps."""
@@ -60,19 +60,19 @@ GROWTH_FLOOR = 1e-3
 rest."""
 
 PARTS, GROWTH = 4, 1.1
-"""Number of parts of the last observed time, and ratio of kinetic energy from part to part above which a wall slides
-away instead of being undecided: under a constant force the energy increases by a third to a half."""
+"""Number of parts of the last ``PATIENCE / 2`` swings, and ratio of mean kinetic energy from part to part above which a
+wall slides away instead of being undecided: under a constant force the energy increases by a third to a half."""
 
 PATIENCE, AT_MOST = 30, 120
 """Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided, and the
 maximum for a wall that rocks with decreasing energy, whose time is extended by half of the first number at a time.
 
 A wall that only sways stands: in the last quarter of the first number its drift stays within the range of the quarter
-before, and the energy it loses there goes into viscous damping, not into sliding, cracking or crushing of joints.
+before, and the energy it loses in both goes into viscous damping, not into sliding, cracking or crushing of joints.
 """
 
 JOINT_SHARE = 0.01
-"""Largest energy that joints dissipate in a wall that only sways, relative to its viscous dissipation."""
+"""Largest energy that friction, cracking and crushing dissipate in a wall that only sways, relative to damping."""
 
 
 class _Row(NamedTuple):
@@ -137,7 +137,7 @@ class _Log:
 
     @property
     def is_lost(self) -> bool:
-        """Whether the missing energy exceeds the work of the loads plus the energy that a wall at rest may have."""
+        """Whether the missing energy exceeds the sum of all |increments of work| plus what a wall at rest may have."""
         energy = self.rows[-1].energy
         return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self.calm
 
@@ -156,7 +156,7 @@ class _Log:
         return bool(np.hypot(*self.rows[-1].places.T).max() > self._still)
 
     def swaying(self, since: float) -> Array | None:
-        """Recent range of drift ``(2,)`` if since a time [s] the wall has only swayed, with decreasing amplitude."""
+        """Range of drift ``(2,)`` in the later half since a time [s] if the wall only sways, less and less; or None."""
         rows = self._since(since)
         drift, energy = np.array([row.drift for row in rows]), np.array([row.energy for row in rows])
         before, late = drift[: len(rows) // 2], drift[len(rows) // 2 :]
@@ -210,10 +210,10 @@ def follow(
     after
         Time for which the run continues once a block has fallen [s].
     points : (k, 2) float, optional
-        Points to follow [m], on the block that contains each of them or has the nearest corner, and within a block's
-        size of the wall; by default the wall's upper corners.
+        Points to follow [m], within a block's size of the wall, each fixed to the movable block that contains it or
+        has the nearest corner; by default the wall's upper corners.
     rows
-        Rows per second, and at least per record.
+        Rows per second, or per record if that is shorter than one second.
     observe
         Called with the run, its state and λ at the beginning and at every row, for each run.
 
@@ -235,7 +235,7 @@ def follow(
 
 
 def _places(rest: Resting, points: Array) -> Array:
-    """Points to follow, ``(k, 2)``, above the ground because drifts are relative to their heights."""
+    """Checked points to follow, ``(k, 2)`` [m]: above the ground, because drifts are relative to their heights."""
     try:
         places = np.array(points, dtype=float)
     except (TypeError, ValueError):

@@ -1,7 +1,7 @@
 """Ground motion applied to a run: in the ground's frame every mass m carries the inertia force −m a.
 
-The load is constant over a few time steps at once, with the mean acceleration derived from the ground's velocity.
-Whatever time steps are used, the wall therefore receives the velocity of the record at that time, to rounding.
+The load is constant over intervals of a few time steps, with the mean acceleration derived from the ground's velocity.
+Whatever the time step, the wall has therefore received the velocity of the record at the end of each, to rounding.
 """
 
 import numpy as np
@@ -41,7 +41,7 @@ class Ground:
         return self.scale * self.history.acceleration(time)
 
     def bring(self, state: State, until: float) -> None:
-        """Integrate a state in time to a time of the record [s], within half a time step."""
+        """Integrate a state up to a time of the record [s], within half a time step."""
         run, history = self.run, self.history
         while (left := until - (now := self.time(state))) > run.dt / 2:
             # Average over whole intervals of the record, whatever output times lie within them.

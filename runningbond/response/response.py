@@ -54,8 +54,8 @@ class Response:
         Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
         the last moment at which no corner had moved farther than a tenth of the wall's size.
     unaccounted
-        Largest share of the energy supplied that the ledger misses, until a block has fallen; if less is supplied,
-        relative to the energy that a wall at rest may have.
+        Largest share of the energy supplied that the ledger misses, until a block has fallen; relative to the kinetic
+        energy that a wall at rest may have if that is larger.
     steps
         Time steps taken.
     seconds
@@ -84,7 +84,7 @@ class Response:
 
     @property
     def residual(self) -> Array:
-        """Energy missing in the ledger ``(n,)`` [J]."""
+        """Energy that the ledger misses ``(n,)`` [J]."""
         return np.asarray(supplied(self.energy) - self.energy[:, 2:].sum(axis=1))
 
     @property

@@ -101,7 +101,7 @@ class Resting:
         return np.asarray(highest[[highest[:, 0].argmin(), highest[:, 0].argmax()]])
 
     def block_at(self, point: Array) -> int:
-        """Block of the wall that contains a point ``(2,)`` [m]; if several or none do, that with the nearest corner."""
+        """Movable block that contains a point ``(2,)`` [m]; if several or none do, the one with the nearest corner."""
         blocks, can_move = self.scene.blocks, ~self.scene.fixed
         holding = blocks.containing(point)
         if can_move[holding].any():

@@ -1,6 +1,6 @@
 """Natural vibrations of a wall about its state at rest: closed joints act as springs, open joints have no stiffness.
 
-With closed points of opening rows b_n, slip rows b_t and areas w, and ties of elongation rows g that are neither slack
+With opening rows b_n, slip rows b_t and areas w of closed points, and elongation rows g of ties that are neither slack
 nor yielding,
 
     K = diag(k) + B_nᵀ diag(w k_n) B_n + B_tᵀ diag(w k_t) B_t + Gᵀ diag(E A / L) G,    K φ = ω² M φ.
@@ -29,11 +29,11 @@ DENSE = 200
 """Degrees of freedom up to which all modes are computed at once."""
 
 PRESSED = 1e-6
-"""Pressure, relative to the largest, above which a joint is closed; joints in contact without load have some by
-rounding."""
+"""Pressure, relative to the largest traction, above which a joint is closed: contacts without load have some by
+rounding. Bonded joints below their tensile strength are closed too."""
 
 LOOSE = 1e-6
-"""ω, relative to the largest, below which a motion is not held by any closed joint."""
+"""ω, relative to (an estimate of) the largest, up to which a motion is not held by any closed joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +143,7 @@ def _slowest_of_body(scaled: csr_array, count: int, least: float) -> tuple[Array
 def _eigenvectors(scaled: csr_array, count: int, shift: float) -> tuple[Array, Array]:
     """Eigenvalues of a symmetric matrix, ascending, and eigenvectors: all of a small one, else more than `count`.
 
-    No eigenvalue is below `shift`.
+    Every eigenvalue must be above `shift`.
     """
     size = scaled.shape[0]
     if size > max(DENSE, 3 * count):

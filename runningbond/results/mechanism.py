@@ -77,7 +77,7 @@ class MechanismCheck:
 
     @property
     def is_driven(self) -> bool:
-        """Whether the loads drive the motion: both the live load and all loads together do work on it."""
+        """Whether the live load, if any, does positive work, and all loads no negative work beyond the tolerance."""
         against_live = self.live is not None and self.live <= 0
         return not against_live and self.total >= -WORK_TOLERANCE * self.scale
 
@@ -106,7 +106,7 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
     dead, live : (3 nb,) float
         Forces and moments of the loads on the blocks [N, N, N m].
     multiplier
-        λ at which the wall moves; 0 if it collapses under its dead load, and the live load's work is not checked.
+        λ at which the wall moves; 0 if it collapses under its dead load: the live load's work is then not checked.
     """
     motion = fastest_corner_by_one(scene.blocks, motion)
     by_dead, by_live = float(dead @ motion.ravel()), float(live @ motion.ravel())

@@ -25,7 +25,7 @@ class Outcome:
         multiple of the live load brings it down; ``infeasible``: it collapses under its dead load; ``undecided``:
         the budget ran out or nothing was proved; ``failed``: the numbers cannot be trusted.
     multiplier
-        λ at collapse, which is in newtons for a point load of 1 N. None unless the status is ``collapse``.
+        λ at collapse; for a point load of 1 N, the load in newtons. None unless the status is ``collapse``.
     lower, upper
         Bracket of the collapse multiplier; each None if the model has no such bound. The message says what the bracket
         means: a proof or a pair of runs.
@@ -51,9 +51,9 @@ class Outcome:
         the dead load, and λ. Empty for models that follow no path. The control point is where a point load acts, or the
         wall's highest corner that lies farthest along a lateral load.
     path : (n, k) float
-        Further quantities of the states of `curve`, with names and units in `path_columns`: reactions of all supports
-        (`Supports`), work of the dead and of the live load since the wall was built, and whether the wall is at rest
-        (1) or falls (0). Without a curve at most one row, the collapse. Unknown values are NaN.
+        Further quantities of the states of `curve`, with names and units in `path_columns`: reactions of all supports,
+        forces of ties (`Supports`), work of the dead and of the live load since the wall was built, and whether the
+        wall is at rest (1) or falls (0). Without a curve at most one row, the collapse. Unknown values are NaN.
     path_columns
         Names of the columns of `path`.
     moments : (n nb, 3) float
@@ -135,7 +135,7 @@ def joined(*parts: str) -> str:
 
 
 def two_digits(value: float) -> str:
-    """Format a number with two significant digits, without an exponent below a million."""
+    """Format a number with two significant digits, without an exponent from 0.0001 to a million."""
     return f"{float(f'{value:.2g}'):g}"
 
 

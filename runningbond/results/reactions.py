@@ -1,7 +1,7 @@
 """Support reactions, which are part of the path quantities of an outcome.
 
-A held block is either fixed and in contact or tied, or pinned, as a beam may be. Its reaction balances its joint
-forces, the pulls of its ties and its loads,
+Held blocks are fixed blocks that are in contact or tied, and pinned blocks, such as a beam. The reaction of a block
+balances its joint forces, the pulls of its ties and its loads,
 
     R = B_nᵀ N + B_tᵀ S + B_tieᵀ T − f_dead − λ f_live.
 

@@ -1,8 +1,8 @@
 """Outcomes and responses on disk: written completely or not at all, and read only if nothing is missing.
 
 A result folder holds ``outcome.json`` or ``response.json`` and the array file that it names. The arrays are written
-first, under a name that contains their digest; the JSON file is moved into place last. A folder is read only if the
-checksum in the JSON file matches.
+first, under a name that contains their digest; the JSON file is moved into place last. A folder is accepted only if
+the checksum in the JSON file matches.
 """
 
 import errno
@@ -38,7 +38,7 @@ class StoreError(Exception):
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a new file beside `path` that replaces it once written; an OSError names `path`.
 
-    If anything goes wrong, everything is left as it was before. The folder is created if missing.
+    If anything goes wrong, `path` is left as it was before. The folder is created if missing.
     """
     with _errors_named(path):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -57,8 +57,8 @@ class Action:
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
         """Blocks ``(n,)`` whose displacement is averaged at the control point, this point, and a direction ``(2,)``.
 
-        The control point is where the first point force on a movable block acts. Without such a force it is the highest
-        corner that lies farthest along the load (the paper's upper corner on the side of the push).
+        The control point is where the first point force on a movable block acts. Without such a force it is, of the
+        highest corners that can move, the one farthest along the load (the paper's upper corner on the pushed side).
         """
         arrows = self.arrows(scene)
         for arrow in arrows:

@@ -24,7 +24,7 @@ ORIENTATIONS = ("bed", "head")
 
 @dataclass(frozen=True)
 class Assignment:
-    """An entry of ``[[assign]]``: a material, and the criteria that select its blocks or joints; None is not used."""
+    """An entry of ``[[assign]]``: a material, and the criteria that select its blocks or joints (None: unused)."""
 
     key: str
     material: str

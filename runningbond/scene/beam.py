@@ -33,7 +33,7 @@ class Drive:
     Parameters
     ----------
     force
-        Live force [N] at λ = 1. For a prescribed displacement a unit force along its first move, and λ is the reaction.
+        Live force [N] at λ = 1. For a prescribed displacement it is 1 N along the first move, and λ the reaction [N].
     at
         Height above the base of the wall at which the drive acts [m]; None is mid-height of the beam.
     path
@@ -121,7 +121,7 @@ class Beam:
         return np.array([[left, level], [right, level], [right, top], [left, top]])
 
     def pins(self, centroid: Array) -> Pins:
-        """Pins of a beam with this centroid ``(2,)`` [m] from the start: they hold its rotation unless it is free."""
+        """Pins that hold the rotation of a beam with this centroid ``(2,)`` [m] at all times; none if it is free."""
         if self.condition == "free" or self.block is None:
             return NO_PINS
         return Pins(np.array([self.block]), centroid, np.zeros(2), np.ones(1))

@@ -121,7 +121,7 @@ class Blocks:
 
     @cached_property
     def reentrant(self) -> Mask:
-        """Whether the outline turns right at each corner by more than the contact tolerance, ``(nv,)``."""
+        """Whether the outline turns right at each corner, as in `turns_right`, ``(nv,)``."""
         reentrant = np.empty(len(self.vertices), dtype=np.bool_)
         reentrant[self.successor] = turns_right(*self._edges)
         return frozen(reentrant, np.bool_)
@@ -160,7 +160,7 @@ class Blocks:
         return np.flatnonzero(holds)
 
     def check(self) -> None:
-        """Raise a `SceneError` that names the first polygon that has no area or crosses itself."""
+        """Raise a `SceneError` that names the first polygon without area, with a repeated corner or crossing itself."""
         edge = self._local[1] - self._local[0]
         length = np.hypot(*edge.T)
         with np.errstate(invalid="ignore"):
@@ -207,7 +207,7 @@ def cross(here: Array, there: Array) -> Array:
 
 
 def turns_right(here: Array, there: Array) -> Mask:
-    """Whether the outline turns right from edges ``(n, 2)`` to those that follow them, by more than the tolerance."""
+    """Whether an outline turns right from edges ``(n, 2)`` to the next, at a sine above `CONTACT_TOLERANCE`."""
     return np.asarray(cross(here, there) < -CONTACT_TOLERANCE * (np.hypot(*here.T) * np.hypot(*there.T)))
 
 

@@ -18,7 +18,7 @@ Rows: TypeAlias = list[tuple[Array, Array]]
 
 BLOCK_LIMIT = 1_000_000
 LATTICE_TOLERANCE = 1e-6
-"""Largest deviation from a whole number of half blocks: absolute up to one, relative to the number above."""
+"""Largest deviation of a number of half blocks or courses from a whole number n, as a multiple of max(1, n)."""
 
 
 @dataclass(frozen=True)

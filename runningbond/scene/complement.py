@@ -9,7 +9,7 @@ import numpy as np
 from .arrays import Array
 
 DEPENDENT = 1e-9
-"""Length of what is left of a vector, relative to the longest row, up to which it counts as linearly dependent."""
+"""Remaining length of a row (relative to the longest row) or axis up to which it counts as linearly dependent."""
 
 
 def complement(rows: Array) -> Array:

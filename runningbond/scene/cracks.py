@@ -22,11 +22,11 @@ CORNER_SNAP = 0.01
 def cut_in_half(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indices]:
     """Cut polygons ``(n, 2)`` [m] that are wider than `widest` [m] at the vertical line through their centroids.
 
-    Returns the pieces, and the number of the block that each piece belongs to, ``(n_pieces,)``. Pieces follow the order
-    of their blocks, first those left of the line, then those right of it, each from the bottom up. A polygon that is
-    not convex may fall into more than two pieces.
+    Returns the pieces, and the number of the block that each piece belongs to, ``(n_pieces,)``. Pieces are in the order
+    of their blocks; within a block, those left of the line come first, and each side is listed from the bottom up. A
+    polygon that is not convex may fall into more than two pieces.
     """
-    # What an opening leaves of a block may have just this width, but exceed it by the rounding error of a sum.
+    # The rest of a block beside an opening may have exactly this width, and exceed it by the rounding error of a sum.
     least = widest * (1 + WIDTH_TOLERANCE)
     pieces = [_halves(polygon) if np.ptp(polygon[:, 0]) > least else [polygon] for polygon in polygons]
     return list(chain(*pieces)), np.repeat(np.arange(len(pieces)), [len(cut) for cut in pieces])

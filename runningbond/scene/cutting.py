@@ -21,7 +21,7 @@ ROUNDING_MARGIN = 1 - 1e-6
 """Factor on minimum sizes that allows for rounding errors: a piece of just this size is accepted."""
 
 Pieces: TypeAlias = dict[int, list[Any]]
-"""Pieces that are left of each block that was cut, as Shapely polygons, by the number of the block."""
+"""Pieces of each block that was cut or took up a sliver, as Shapely polygons, by the number of the block."""
 
 
 def cut_openings(
@@ -52,7 +52,7 @@ def cut_openings(
     Raises
     ------
     SceneError
-        For the cases above, for openings and lintels that overlap, and for openings that cut no or all blocks.
+        For the cases above, for openings and lintels that overlap, that cut no block, or leave nothing of the wall.
     """
     wall = _Wall(np.array(polygons), width)
     holes = [wall.hole(opening.key, opening.low, opening.high) for opening in openings]
@@ -164,7 +164,7 @@ class _Wall:
         return bool(right - left < ROUNDING_MARGIN * min(SLIVER * self.width, whole))
 
     def _join(self, pieces: Pieces, block: int, sliver: Any, holes: list[_Hole]) -> tuple[int, Any]:
-        """Merge a sliver with the piece in its course that shares the longest head joint with it; return the result."""
+        """Merge a sliver with the piece beside it that has the longest head joint with it; return block and union."""
         beside = [
             (shapely.length(shapely.intersection(sliver, other)), neighbour, other)
             for neighbour in (block - 1, block, block + 1)

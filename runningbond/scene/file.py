@@ -71,7 +71,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     Parameters
     ----------
     content
-        The file as nested dictionaries. A joint's ``law`` and loads may be Python objects instead of tables.
+        The file as nested dictionaries. A joint's ``law`` is a Python object; loads may be objects in place of tables.
     folder
         Folder that paths of drawings and records are relative to.
     default_title

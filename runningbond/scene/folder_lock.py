@@ -23,7 +23,7 @@ _claims: dict[Path, int] = {}
 
 
 def claim(folder: Path, key: str) -> None:
-    """Reserve a folder for this process until it ends, as the only one that writes into it.
+    """Reserve a folder until this process ends, so that no other process writes into it.
 
     The lock is on a file in the system's temporary folder, so that processes that only read the folder need not wait.
     On Windows, and if this file cannot be made or locked, other processes are not kept out.
@@ -68,9 +68,9 @@ def _give_back(path: Path, owner: int) -> None:
 def locked(folder: Path, *, reading: bool = False) -> Iterator[None]:
     """Wait until no other process has locked a folder, and lock it.
 
-    The lock is on the folder itself or, on Windows, on a file in it; it ends with its process, even if that crashes.
-    On a file system without locks nothing is locked; atomic writes are safe without a lock. With `reading`, other
-    readers are let in, provided that the folder itself is locked.
+    The lock is on the folder itself or, on Windows, on a file in it; it ends with the `with` block, or when the process
+    crashes. On a file system without locks nothing is locked; atomic writes are safe without a lock. With `reading`,
+    other readers are let in, except on Windows.
     """
     if fcntl is None:
         with _file_locked(folder / LOCK):

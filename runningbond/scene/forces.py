@@ -85,7 +85,7 @@ class Forces:
 
 
 def _numbers(block: ArrayLike, count: int) -> Indices:
-    """Block numbers ``(n,)``; anything else, such as a mask or a number not below `count`, is refused."""
+    """Block numbers ``(n,)``; anything else, such as a mask or a number outside 0 … `count` - 1, is refused."""
     numbers = np.reshape(block, -1)
     if len(numbers) and not (numbers.dtype.kind in "iu" and numbers.min() >= 0 and numbers.max() < count):
         raise SceneError("load.live.block", f"must be numbers of blocks, 0 … {count - 1}", block)

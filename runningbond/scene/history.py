@@ -1,7 +1,7 @@
 """Motion of the ground: a record or a pulse, for a dynamic analysis in time.
 
 Between samples, accelerations and velocities are interpolated linearly, displacements by a cubic spline. The analysis
-uses the ground's velocity: whatever the time step, the wall receives the exact change of velocity over each interval.
+uses the ground's velocity: whatever its size, each time step applies exactly the change of velocity over that step.
 """
 
 import math
@@ -34,7 +34,7 @@ QUANTITIES = {"acceleration": 1.0, "g": STANDARD_GRAVITY, "velocity": 1.0, "disp
 PULSES = ("sine", "half-sine", "ricker", "ramp")
 
 SAMPLES_PER_PERIOD = 1000
-"""Samples per period of a pulse; linear interpolation between them errs by 5e-6 of the amplitude."""
+"""Samples per period of a pulse; linear interpolation of a sine between them errs by 5e-6 of its amplitude."""
 
 INTERVALS = 200
 """Intervals per period of a pulse; within each, the acceleration may be replaced by its mean."""
@@ -125,8 +125,8 @@ class History(Action):
     def velocity(self, time: Array | float) -> Array:
         """Velocity of the ground ``(…, 2)`` [m/s] at some times [s]; the ground is at rest before the record.
 
-        After the record the velocity stays constant, or grows with the last acceleration if that `holds`; after a
-        record of displacements the ground stays at the last one.
+        After the record the velocity stays constant or, if `holds`, grows with the last acceleration; after a record of
+        displacements the ground is at rest in the last position.
         """
         time = np.asarray(time, dtype=float)
         begun, over = (time > 0)[..., None], (time > self.duration)[..., None]

@@ -95,7 +95,7 @@ class Closure:
     growth
         Increase of stiffness per pressure [1/m]; `Stiffness.normal` is the stiffness at zero pressure.
     stiffest
-        Stiffness above which it stays constant [Pa/m].
+        Largest normal stiffness [Pa/m]: the growth ends there.
     """
 
     growth: Positive
@@ -116,8 +116,8 @@ class JointMaterial:
     cohesion
         Shear strength at zero normal stress [Pa].
     tensile_strength
-        Tension cut-off [Pa], at most the apex ``cohesion / friction`` of the cone; None is the apex, also that of
-        copies of the material with another friction or cohesion.
+        Tension cut-off [Pa], at most the apex ``cohesion / friction`` of the cone. None is the apex, which
+        then changes in copies of the material with another friction or cohesion.
     elasticity
         Mortar or stiffness; None if the scene does not give it. Limit analysis does not use it.
     inset

@@ -17,7 +17,7 @@ class Lintel:
     height, bearing
         Height of the lintel and its bearing length in the wall on either side [m].
     material
-        Name of the lintel's material; None for the material of the other blocks.
+        Name of the lintel's material; None for the default material of blocks.
     """
 
     height: Positive

@@ -110,7 +110,7 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
 
 
 def _corrections(wall: Table) -> dict[str, float | None]:
-    """Widths [m] by which outlines that do not quite touch are expanded, and gaps are healed."""
+    """Largest widths [m] of the mortar joints to be expanded into and of the gaps to be healed; None if not given."""
     return {"expand": wall.optional_number("expand", ABOVE_ZERO), "heal": wall.optional_number("heal", ABOVE_ZERO)}
 
 

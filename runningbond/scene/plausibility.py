@@ -61,7 +61,7 @@ OF_MORTAR = {
 OF_TIES = Plausible(1e8, 1e12, "Pa", PRESSURES)
 AREA = Plausible(1e-8, 0.1, "m²", {"mm²": 1e-6, "cm²": 1e-4})
 UNREAL_YIELD_STRESS = 5e9
-"""Yield stress of a tie [Pa] that no real material reaches: above it the yield force was probably given as a stress."""
+"""Stress [Pa] that no real tie reaches: if yield force / area is above it, a stress was probably given as `yield`."""
 
 SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
 GRAVITY = Plausible(9.3, 10.3, "m/s²")
@@ -201,7 +201,7 @@ def _courses(scene: Scene) -> Iterator[str]:
     levels = _distinct(low[:, 1], scene.blocks.tolerance)
     if full.mean() < RECTANGULAR_SHARE or 2 * len(levels) > max(len(full), 4):
         return
-    beds = _distinct(low[full, 1], scene.blocks.tolerance)  # a stone cut along an arch rests its lowest corner on none
+    beds = _distinct(low[full, 1], scene.blocks.tolerance)  # not of arch stones: their lowest corner lies on no bed
     gaps = np.diff(beds)
     close = np.flatnonzero(gaps < LEVEL_DIFFERENCE * size[full, 1].min())
     if len(close):

@@ -146,10 +146,10 @@ class LineLoad(Action):
         return max(min(first, default=-math.inf), share[0]), min(max(last, default=math.inf), share[1])
 
     def _crossings(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
-        """Shares at which the line enters and leaves a block where the block's share begins and ends; NaN for none.
+        """Positions at which the line enters and leaves a block, near the ends of the block's share; NaN if none.
 
         An edge is crossed if its ends lie on either side of the line, farther off than the contact tolerance. A steep
-        edge is crossed also if one end lies on the line: all edges of a corner that the line only touches in passing.
+        edge also counts as crossed if one end lies on the line, even if the line only touches the block in this corner.
         """
         reach = scene.blocks.tolerance
         place, off = self._beside(scene.blocks.polygon(block))
@@ -159,7 +159,7 @@ class LineLoad(Action):
         across |= (low <= reach) & (high >= -reach) & (high - low > STEEP * reach)
         place, off, run, rise = place[across], off[across], run[across], rise[across]
         at = place - off / rise * run
-        # The share of the line ends on the buffered outline, which has arcs at corners: allow for its rounding.
+        # The block's share ends on its outline grown by the tolerance, with arcs at corners: allow for rounding errors.
         within = (1 + 1e-6) * reach * np.hypot(run, rise / self._length) / np.abs(rise)
         into = at[(rise < 0) & (np.abs(at - share[0]) <= within)]
         out = at[(rise > 0) & (np.abs(at - share[1]) <= within)]
@@ -294,7 +294,7 @@ class Moment(Action):
 
 @dataclass(frozen=True, eq=False)
 class GivenForces(Action):
-    """Forces as plain arrays: how records store a user-defined load, and randomly drawn walls store point loads."""
+    """Forces as plain arrays: they replace user-defined loads in result files, and point loads on randomised walls."""
 
     given: Forces
     place: tuple[Indices, Array, Array] | None = None  # where displacements are read, as `control` returns it

@@ -32,10 +32,10 @@ DECIMAL = re.compile(r"[^,.]*(\d,\d[^,.]*)?")
 """A word in which a comma, if there is one, is a decimal comma."""
 
 GAP_STEPS, FEWEST_ROWS = 5.0, 8
-"""Time step, in median ones, above which a record has a gap; fewest rows of a record that is checked for gaps."""
+"""Time step, in median time steps, above which a record has a gap; fewest rows of a record checked for gaps."""
 
 LARGEST_VALUE = 1e6
-"""Largest admissible number in a record, in the file's unit: no ground motion is larger."""
+"""Largest admissible number in a record, times [s] included, in the file's unit: no ground motion is larger."""
 
 
 @dataclass(frozen=True, eq=False)

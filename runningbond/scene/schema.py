@@ -119,10 +119,10 @@ SCENES: tuple[Schema, ...] = (
     {"load": {"gravity": 9.81, "live": {"kind": "settlement", "box": BOX, "by": [0.0, -0.1]}}},
     {"joints": {"lime": {"friction": 0.5}}, "assign": [{"joint": "lime", "orientation": "head"}]},
     {"load": {"gravity": 9.81, "history": PULSE}},
-    {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # this file does not exist, nor
-    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "expand": 0.01, "heal": 0.001}},  # does this,
+    {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # no such file: only its keys matter
+    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "expand": 0.01, "heal": 0.001}},  # no such file
     {"wall": {"thickness": 0.2, "outlines": [STONE], "ground": [SOIL], "units": "m", "expand": 0.01, "heal": 0.001}},
-    {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # and there are no layers
+    {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # no layer "OAK"
 )
 """The example scenes: each replaces or adds tables to those of `PLAIN`."""
 

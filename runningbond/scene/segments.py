@@ -12,10 +12,10 @@ from .errors import SceneError
 from .polygons import smaller_sides
 
 SMALL_OVERLAP = 0.1
-"""Depth of an overlap, relative to the root area of the smallest block, below which it may be a survey inaccuracy."""
+"""Depth of an overlap, in sizes (root area) of the smallest block, below which it may be a survey inaccuracy."""
 
 ROUNDING = 1e-9
-"""Distance of two contact points, relative to the joint's length, that is rounding: their forces have no lever arm."""
+"""Distance of a joint's contact points, relative to its length, up to which they coincide: no lever arm is left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Joints:
         return frozen(run[:, 0] > run[:, 1], np.bool_)
 
     def too_short_for(self, inset: float | Array) -> Mask:
-        """Whether contact points meet that are an inset [m] (one, or one per joint) away from both ends, ``(nj,)``."""
+        """Whether contact points would meet if moved inwards by an inset [m], one or one per joint, ``(nj,)``."""
         return np.asarray(2 * np.asarray(inset) >= (1 - ROUNDING) * self.length)
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 LARGEST_ANGLE = 10.0
-"""Largest rotation of a support [degrees]: up to it rotations count as small."""
+"""Largest rotation of a support at λ = 1 [degrees]: up to it rotations count as small."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Settlement(Action):
         return np.where(self.moving(scene)[:, None], motion, 0.0)
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse pinned supports, and a box without moving ground that supports a movable block."""
+        """Refuse pinned supports, and a box that holds no moving body in contact with a movable block."""
         if len(scene.pins) and not scene.fixed.any():
             raise SceneError(key, 'needs support.kind "base" or "fixed-first-course": a ground that moves')
         moving = self.moving(scene)
@@ -121,7 +121,7 @@ class Settlement(Action):
             raise SceneError(f"{key}.box", "holds no ground that bears a block", [list(corner) for corner in self.box])
 
     def control(self, scene: "Scene") -> Any:
-        """First moving block of the ground, the middle of its top, and the direction in which this point moves."""
+        """First moving block, the middle of its top, and the direction in which this point moves."""
         block = np.flatnonzero(self.moving(scene))[:1]
         low, high = scene.blocks.extent(int(block[0]))
         at = np.array([(low[0] + high[0]) / 2, high[1]])
@@ -139,7 +139,7 @@ class Settlement(Action):
 def cut_ground(grounds: Sequence[Array], settlements: Sequence[Settlement], reach: float) -> list[Array]:
     """Cut grounds ``(n, 2)`` [m] at the sides and tops of the boxes of settlements.
 
-    A cut within the contact tolerance `reach` [m] of a corner of the ground is moved to it: no piece is thinner.
+    A cut within the contact tolerance `reach` [m] of a corner is moved to that corner; thinner pieces are dropped.
     """
     pieces = [shapely.Polygon(ground) for ground in grounds]
     corners = np.concatenate([np.zeros((0, 2)), *grounds])

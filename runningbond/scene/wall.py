@@ -35,7 +35,7 @@ SAME_COLUMN = 1e-9
 """Difference in x, relative to the wall's size, below which blocks are in one column: far below contact tolerance."""
 
 CANCELLATION = 1e-12
-"""Resultant of all live loads, relative to the largest of a single one, below which it is zero but for rounding."""
+"""Sum of the live loads on a block, relative to the largest of one load on any block, up to which it counts as 0."""
 
 GROUND_REACH = 30.0
 """Reach of moving ground beyond either end of the wall, in its longer side: farther than records make walls slide.
@@ -77,9 +77,9 @@ class Scene:
     load
         Dead and live load.
     bond
-        Nominal block if the wall is bonded on a lattice, None for a drawing.
+        Nominal block if the wall is bonded in courses of equal height, else None.
     ties, beam
-        Bars, and the stiff body across the top; None if there is none.
+        Bars; and the stiff body across the top, None if there is none.
     notes
         What was healed or left out when the wall was read.
     part_of : (nb,) int
@@ -195,7 +195,7 @@ class Scene:
 
     @cached_property
     def density_in_motion(self) -> Array:
-        """Density of each block if the ground moves, ``(nb,)`` [kg/m³]: as given, but a beam has at least some mass."""
+        """Density of each block if the ground moves, ``(nb,)`` [kg/m³]: as given; for a beam see `LEAST_BEAM_MASS`."""
         mass = float(self._given_density[self.masonry] @ self._volume[self.masonry])
         beam = 0.0 if self.beam is None else float(self._volume[self.beam.block].sum())
         return self._with_beam_of(LEAST_BEAM_MASS * mass / beam if beam else 0.0)
@@ -306,7 +306,7 @@ class Scene:
 
     @cached_property
     def column_by_column(self) -> Indices:
-        """Order of blocks from left to right and, within a column, from the bottom up; alternate courses apart.
+        """Order of blocks by columns: left to right, each from the bottom up; columns of alternate courses apart.
 
         With this numbering, joints of one kind come in long runs, in which both block numbers increase by one from
         joint to joint; if the two kinds of columns are of equal height, runs continue from one column to the next.
@@ -465,7 +465,7 @@ def build_scene(
 
 
 def _in_use(materials: Sequence[Material], of: Indices) -> tuple[tuple[Material, ...], Indices, list[str]]:
-    """Materials in use or of the unnamed tables, the renumbered materials of `of`, and notes on materials left out."""
+    """Materials in use or of tables like ``[block]``, `of` renumbered to match, and notes on materials left out."""
     kept = [k for k, each in enumerate(materials) if table_of(each) == each.name or (of == k).any()]
     unused = [each for k, each in enumerate(materials) if k not in kept]
     notes = [f"{table_of(each)}: is assigned to nothing; it is left out" for each in unused]
@@ -511,7 +511,7 @@ def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
 
 
 def _strip_below(blocks: Blocks, far: float) -> Array:
-    """Ground strip that reaches `far` sizes of the wall beyond either end; a toppling wall needs one to land on."""
+    """Ground that extends `far` sizes of the wall beyond either end; one is enough for a toppling wall to land on."""
     low, high = blocks.extent()
     size = max(high - low)
     depth, reach = 0.1 * size, far * size

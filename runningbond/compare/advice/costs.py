@@ -3,9 +3,9 @@
     seconds = pace · (at_100 · (n / 100)^growth · (FITTED_TOLERANCE / tolerance)^finer + start)
 
 with n blocks and the `Cost` of the model, which `benchmarks/studies/cost_laws.py` prints from the table of a
-comparison, and the exponent of the tolerance as measured by `runningbond study`; multiplied by factors for features of
-the wall that increase the cost. The pace transfers the laws from one machine to another: it is the geometric mean of
-measured over expected time of the models already run, weighted by the inverse square of the scatter of each law.
+comparison, and the exponent of the tolerance as measured by `runningbond study`. Factors for features of the wall that
+increase the cost are not shown. The pace transfers the laws from one machine to another: it is the geometric mean of
+measured over expected time of the models already run, with weights 1 / (log s)² for a law with a factor s of scatter.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from runningbond.scene import Scene
 FITTED_TOLERANCE = 0.01  # tolerance of the comparison to which the laws were fitted
 
 LEAST_SCATTER = 1e-3
-"""Least logarithm of the scatter of a law, for a finite weight if a law has no scatter."""
+"""Least logarithm of the factor of scatter of a law, so that the weight of a law without scatter is finite."""
 
 POINT_PROGRAMS = 150_000
 """Linear programs of a short search for certificates, times the number of joint ends. The search then takes about as

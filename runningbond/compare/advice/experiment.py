@@ -88,7 +88,7 @@ def joints_of(scene: Scene) -> str:
 def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
     """Measured error of a model on walls with the scene's kind of joints; None if no such wall was tested.
 
-    Of several, the one with the same assumptions on splitting blocks, then on crushing joints, is preferred.
+    Of several, one that agrees with the scene on splitting blocks is preferred, then one that agrees on crushing.
     """
     crushes = any(each.compressive_strength is not None for each in scene.materials_of_joints)
     splits = scene.inner_joint is not None

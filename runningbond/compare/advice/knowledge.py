@@ -56,7 +56,7 @@ class Knowledge:
     answer: Outcome | None = None  # outcome with the bracket of the answer
     lowest: float | None = None  # smallest collapse load by a proof, a certificate or a history
     draws: int = 0  # number of histories that the last model followed up to collapse
-    contradicted: bool = False  # whether a history and narrow certified loads together exceed the tolerance
+    contradicted: bool = False  # whether a history and narrow certified loads together span more than the tolerance
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
@@ -100,7 +100,7 @@ class Knowledge:
 
     @property
     def histories(self) -> list[Model]:
-        """Models that follow the loading path and include crushing and closure if the joints have them."""
+        """Models that follow the loading path, with crushing and closure if joints have them, in `ladder` order."""
         known = {"joint.compressive_strength": self.crushes, "joint.closure": self.closes}
         wanted = {key for key, is_wanted in known.items() if is_wanted}
         return [model for model in ladder("history") if wanted <= model.reads]

@@ -7,7 +7,7 @@ from runningbond.results import Outcome
 
 from .knowledge import Knowledge, deforms, ladder
 
-DRAWS = 3  # histories, of walls that differ in their last bits, if the certified loads spread beyond the tolerance
+DRAWS = 3  # number of histories, of walls that differ in their last bits, if certified loads do not settle the answer
 
 
 @dataclass(frozen=True)

@@ -157,7 +157,7 @@ def _mesh(block: tuple[Any, Any], name: str) -> tuple[Array, list[list[int]]]:
 
 
 def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None) -> tuple[int, tuple[int, int], float]:
-    """Axis of the thickness, on which all blocks span between the same planes; both axes of the wall; its size."""
+    """Axis of the thickness, along which all blocks span the same interval; both axes of the wall; its size."""
     low, high = (np.array([reach(points, axis=0) for _, points in meshes]) for reach in (np.min, np.max))
     size = float((high.max(axis=0) - low.min(axis=0)).max())
     scatter = np.maximum(np.ptp(low, axis=0), np.ptp(high, axis=0))
@@ -166,7 +166,7 @@ def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None
         thick = {name: unit * float((high - low)[0, "xyz".index(name)]) for name in fits}
         name = _across(thick, thickness, SAME_COORDINATE * size * unit)
         return "xyz".index(name), AXES[name], size
-    # The thickness must be along the axis on which most blocks have the same extent.
+    # For the error message, the thickness is taken along the axis on which most blocks have the same extent.
     off = np.maximum(abs(low - np.median(low, axis=0)), abs(high - np.median(high, axis=0)))
     alike = (off <= SAME_COORDINATE * size).mean(axis=0)
     across = int(np.argmax(alike))
@@ -183,8 +183,8 @@ def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None
 def _across(thick: dict[str, float], thickness: float | None, flat: float) -> str:
     """Axis of the wall's thickness, out of the axes along which all blocks are equally thick, by `thick` [m].
 
-    Blocks of zero thickness are flat along this axis only. Of several axes it is the one along which the blocks are as
-    thick as the wall. If these are x and y, the assembly is a square pier, which looks the same along both.
+    An axis along which blocks have zero thickness is taken first. Otherwise, of several axes it is the one along which
+    blocks are as thick as the wall. If these are x and y, the assembly is a square pier, the same seen along both.
     """
     without = [name for name in thick if thick[name] <= flat]
     if without or len(thick) == 1:

@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import Array
 
 SAGITTA = 5e-4
-"""Largest sagitta of a chord, relative to the radius and to the length of the arc between two corners."""
+"""Largest sagitta of a chord, relative to the radius, and also to the length of the arc between two corners."""
 
 ROUNDING = 1e-7
 """Distance, in sizes of the drawing, below which points coincide: for 10 m the sixth decimal in metres."""
@@ -158,7 +158,7 @@ def _pieces(angle: float) -> int:
 
 
 def spline_points(spline: Any) -> Array:
-    """Points ``(n, 3)`` on an ezdxf B-spline, equally many between any two knots, dense enough to meet `SAGITTA`."""
+    """Points ``(n, 3)`` on an ezdxf B-spline, equally many (at most 512) per knot span, dense enough for `SAGITTA`."""
     knots = np.array(spline.knots())
     knots = np.unique(np.clip(knots, knots[spline.order - 1], knots[-spline.order]))
     pieces = 2

@@ -24,10 +24,10 @@ from .healing import missed_joints
 from .loops import join
 
 STRAIGHT = 2e-5
-"""Deviation from a straight side up to which a corner is removed, in sizes of the smallest block: rounding error."""
+"""Deviation from a side, in sizes of the smallest block, up to which a corner is removed: below contact tolerance."""
 
 MAX_ROUNDING = 1e-4
-"""Upper limit of the rounding error, in median lengths of drawn pieces: distant stray curves enlarge a drawing."""
+"""Largest tolerance, in median sizes of drawn pieces: `ROUNDING` is too large if far-off strays enlarge a drawing."""
 
 COLLINEAR_AREA = 1e-9
 """Area of an outline's convex hull, in squares of its larger extent, up to which its corners count as collinear."""
@@ -138,7 +138,7 @@ def listed_outlines(
 
 
 def _together(drawing: Drawing, expand: float | None, heal: float | None) -> Drawing:
-    """Expand and heal the stones of a drawing, and add notes on remaining gaps and on slivers."""
+    """Expand the stones of a drawing, heal stones and ground, and add notes on remaining gaps and on slivers."""
     blocks, count, notes = drawing.blocks, len(drawing.blocks), drawing.notes
     if expand is not None:
         blocks, note = expanded(blocks, drawing.grounds, expand)

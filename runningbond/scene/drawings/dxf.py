@@ -22,7 +22,7 @@ MAX_INSERT_DEPTH = 32
 """Maximum nesting depth of INSERTs."""
 
 VIEWPORT = "VIEWPORT"
-"""Entity that shows the model on a sheet of the paper space; it is not a drawing of its own."""
+"""Entity that shows the model on a sheet of the paper space; it draws nothing itself."""
 
 UNITS_KEY = "$INSUNITS"
 
@@ -32,7 +32,7 @@ HEADER_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """One curve of successive pieces: arcs, and polylines ``(n, 2)`` in drawing units."""
+    """One curve of arcs and polylines ``(n, 2)`` in drawing units; each piece starts where the last one ends."""
 
     layer: str
     name: str
@@ -70,7 +70,7 @@ def read_dxf(path: Path) -> ModelSpace:
             raise SceneError(KEY, "cannot be read as DXF: it is not a regular file", str(path))
         try:
             from ezdxf.filemanagement import readfile  # slow import, so only once the file is known to exist
-        except Exception as error:  # importing it reads user settings and fails without a home folder
+        except Exception as error:  # importing it reads user settings, and may fail without a home folder
             raise SceneError(KEY, f"cannot be read, for ezdxf cannot be imported: {error}", str(path)) from error
         document = readfile(path)
         left_out: Counter[tuple[str, str]] = Counter()

@@ -22,7 +22,7 @@ SHRUNK = 0.1
 """Distance by which stones are shrunk at first so that none touch, relative to the width of the widest joint."""
 
 MAX_SAMPLES = 2e6
-"""Maximum number of samples on all stones; a width that needs more is a typing error and would exhaust the memory."""
+"""Maximum number of samples on all stones; a width that needs more is surely a slip, and would exhaust the memory."""
 
 MAX_OVERLAP = 0.1
 """Overlap, relative to a stone's area, above which it is reported as the reason why expansion fails."""
@@ -47,13 +47,13 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
     expanded : list of (n, 2) float
         Outlines of the stones, in the given order; neighbours share the same line.
     note
-        Mean width of the joints, and where gaps remain that are not much wider than joints.
+        Mean width of the joints, and where gaps remain that are at most twice as wide as the widest joint.
 
     Raises
     ------
     SceneError
-        For a width above the smaller side of the smallest stone or negligible beside the length of all sides, and for
-        stones that lie in others or in the ground, or would enclose others.
+        For a width above the smaller side of the narrowest stone or negligible beside the length of all sides, and for
+        stones that lie in others or in the ground, would enclose others, or fall into pieces.
     """
     corners = np.vstack([*stones])
     origin = corners.mean(axis=0)  # rounding errors of coordinates grow with the distance from zero
@@ -153,7 +153,7 @@ def _closed(shape: Any, width: float) -> Any:
     """Morphological closing of a shape: its gaps up to a width are filled."""
     grown = shapely.buffer(shape, width / 2, join_style="mitre")
     closed = shapely.union(shapely.buffer(grown, -width / 2, join_style="mitre"), shape, grid_size=GRID * width)
-    return shapely.MultiPolygon(polygonal_parts(closed))  # the grid reduces narrow parts to lines
+    return shapely.MultiPolygon(polygonal_parts(closed))  # without narrow parts, which the grid reduces to lines
 
 
 def _apart(drawn: Any, grid: float) -> Any:

@@ -20,7 +20,7 @@ MAX_ITERATIONS = 200
 """Maximum number of Gauss-Newton steps; about a dozen suffice for gaps as small as `heal` permits."""
 
 ROUNDING = 1e-13
-"""Distance, in sizes of the drawing, up to which it counts as a rounding error."""
+"""Distance, in sizes of the drawing, up to which two points coincide except for rounding errors."""
 
 NARROW_GAP = 0.01
 """Gap between facing edges, in sizes of the smaller block, below which a joint was certainly intended."""
@@ -67,8 +67,8 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     Raises
     ------
     SceneError
-        For a reach above a tenth of the smallest block's smaller side, a reach that merges corners of one block, and
-        gaps that corners would have to move further to close.
+        For a reach above a tenth of the smallest block's smaller side, or that merges corners of one block, for gaps
+        that corners would have to move further to close, and for a block that would cross itself.
     """
     blocks = Blocks.from_polygons(polygons)
     sides = smaller_sides([shapely.Polygon(p) for p in polygons])
@@ -160,7 +160,7 @@ def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:
 
 
 def _apart(touches: _Touches, nodes: Array) -> Array:
-    """Signed distances ``(n,)`` [m] of nodes from the lines of the edges to lie on, positive to the left."""
+    """Signed distances ``(n,)`` [m] of nodes from the lines of the edges they are to lie on, positive to the left."""
     _, normal = _place(touches, nodes)
     found: Array = ((nodes[touches.lies] - nodes[touches.low]) * normal).sum(axis=1)
     return found

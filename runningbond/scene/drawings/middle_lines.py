@@ -17,17 +17,17 @@ STRAIGHTENED = 0.1
 """Largest deviation of a joint's line from the middle of the mortar, relative to the width of the widest joint."""
 
 BUMP_RADIUS = 0.8
-"""Distance from a junction, in largest widths, within which the middle of a joint that continues through it is ignored:
-at the end of a head joint it bulges by an eighth of a width, which no block has to climb. It bends at faces too."""
+"""Distance from a junction, in widths of the widest joint, within which the middle of a joint that continues through it
+is ignored: at a head joint's end it bulges by an eighth of a width, an obstacle to sliding. It bends at faces too."""
 
 CONTINUOUS_COSINE = -0.8
 """Cosine of the angle between two lines at a junction of three or more, below which they are one continuous line."""
 
 EXTENSION, EXTENSION_AT_FACES = 1.0, 1.5
-"""Extension of a line past its end at a continuous line, or near a face, in largest widths; it is trimmed there."""
+"""Extension of a line past its end on another line or near a face, in widths of the widest joint; it is cut there."""
 
 REACH = 2.5
-"""Distance from other stones up to which samples are used, in largest widths."""
+"""Distance from other stones up to which samples are used, in widths of the widest joint."""
 
 Junction: TypeAlias = tuple[float, float]
 """Point where lines end [m]."""

@@ -32,7 +32,7 @@ QUESTIONS = {  # what each model is used for
     "dem-dynamic": "loads brought up in time",
     "fem": "blocks that deform or crack",
 }
-CHANGED, DEARER = 1.5, 1.25  # ratios of errors and of costs above which a parameter changes them
+CHANGED, DEARER = 1.5, 1.25  # least ratios (or inverses) of errors and of costs that count as a change
 EXACT = 1e-4  # error that counts as zero: below the digits of published answers
 TOLERANCES = (0.10, 0.05, 0.02, 0.01, 0.005)
 Setting: TypeAlias = tuple[str, str, str]  # model, parameter and setting; the last two empty for a model's defaults

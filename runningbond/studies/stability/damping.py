@@ -139,7 +139,7 @@ def _bisected(before: Callable[[float], bool], low: float, high: float) -> float
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Edges: ranges of α and ξ around the suite's in which every verdict is right, and the number of wrong ones."""
+    """Edges: smallest and largest α and ξ with which every verdict is right, and the number of wrong verdicts."""
     bad = {(row["α"], row["ξ"]) for row in rows[MAPS] if row["verdict"] != "right"}
     alphas = [a for a in LOCALS if (a, VISCOUS) not in bad]
     xis = [x for x in VISCOSITIES if (LOCAL, x) not in bad]

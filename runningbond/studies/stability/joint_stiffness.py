@@ -69,7 +69,7 @@ def stiffness_note(message: str) -> str:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Edges: overlap, conditioning and λ farthest from theory, and the range in which no model adds a note."""
+    """Edges: overlap, conditioning, λ farthest from theory; smallest and largest k_n without a note of any model."""
     rest = [row for row in rows[REST] if row[OVERLAP] < U_CRIT]
     deepest = max(rest, key=lambda row: abs(row[OVERLAP] / row[THEORY] - 1))
     worse, exact = rows[REST][-1][CONDITION] / rows[REST][0][CONDITION], known_wall(W1).multiplier

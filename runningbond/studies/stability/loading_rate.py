@@ -30,10 +30,10 @@ from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_scene, known_
 
 WALLS = (SLIDING, TOPPLING, W1)
 RATES = tuple(10.0 ** -(k / 3) for k in range(7))  # rates of λ [1/s], the fastest first
-PUSHES = tuple(1_000 * 2**k for k in range(12))  # time steps in which a wall is pushed by the limit of a load step
+PUSHES = tuple(1_000 * 2**k for k in range(12))  # time steps in which a wall is pushed by the collapse displacement
 LOADINGS = (0, 1, 4, LOADING, 2 * LOADING, 8 * LOADING)  # durations of the first load step, in times to rest
 DRY = ("panel-12", "point-load-4")  # published walls whose λ depends on their history; the second has no weight
-ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between two checks, width of brackets
+ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between checks, relative bracket width
 FLOOR = 1e-4  # smallest difference in charts [%]
 RAMPS, DRIVEN, STEPPED, OWN = "Ramps", "Displacement control", "Load steps", "The suite's own speeds"
 RATE, SPEED, OFF, LOADED = "rate [1/s]", "speed [mm/s]", "off by [%]", "first step in [times to rest]"
@@ -68,14 +68,14 @@ def order(name: str, rate: Array, multiplier: Array) -> float:
 
 
 def at_no_speed(rate: Array, multiplier: Array) -> tuple[float, float]:
-    """λ of a ramp extrapolated to zero rate and its standard error, by a line over rate^(2/3), weighted as scatter."""
+    """λ of a ramp at zero rate and its standard error, by a line over rate^(2/3), weighted by 1 / rate^(2/3)."""
     away = rate**ORDER
     line, covariance = np.polyfit(away, multiplier, 1, w=1 / away, cov=True)
     return float(line[1]), float(np.sqrt(covariance[1, 1]))
 
 
 def push_row(name: str, steps: int) -> Row:
-    """Peak of λ of a wall that is pushed by the displacement limit of its load steps, in a number of time steps."""
+    """Peak of λ of a wall that is pushed by the collapse displacement of its load steps, in a number of time steps."""
     wall = known_wall(name)
     run, rest = wall.rest()
     peak = drive(run, rest, wall.far, steps).peak

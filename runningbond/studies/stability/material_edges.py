@@ -22,7 +22,7 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import TABLES, Box, boxes
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-UNSEEN = 1e-4  # multiplier below which dynamic models cannot distinguish from zero
+UNSEEN = 1e-4  # multiplier below which dynamic models cannot distinguish it from zero
 SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of the same wall
 PART = "Answers"
 Exact: TypeAlias = float | tuple[float, float] | str  # λ, two loads between which λ lies, a status, or ``refused``
@@ -64,7 +64,7 @@ def piled(*piles: Box) -> Scene:
 
 
 def gaping(gap: float) -> Scene:
-    """A block of 240 × 240 mm above another, with a gap of some contact tolerances."""
+    """A block of 240 × 240 mm above another, with a gap in contact tolerances, negative for an overlap."""
     return piled((0, 0, 0.24, 0.24), (0, 0.24 * (1 + gap * CONTACT_TOLERANCE), 0.24, 0.24))
 
 

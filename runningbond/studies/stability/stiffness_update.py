@@ -26,7 +26,7 @@ WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS
 TENTHS, FINE = 10, 2000  # shares of the collapse load in the rows, and increments to that of a single block
 INCREMENTS = (1, 10, 100)  # load steps to the collapse load; 1 means that each tenth is applied at once
 ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as read in the paper
-OUTSIDE = 1e-3  # excess of forces over Eq. 3, relative to the largest force, above which Eq. 3 is violated
+OUTSIDE = 1e-3  # excess of forces over Eq. 3, relative to the largest force, above which it counts as violated
 TOLERANCE = 0.02  # relative width of the bracket of collapse loads
 
 LOOKS = {  # colour, letter and label of the possible results for a tenth of the collapse load

@@ -26,7 +26,7 @@ from runningbond.scene import Array, JointMaterial, Stiffness
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.walls import bonded, boxes, outcome_row
 
-STEPS, STEPS_DAMPED = 4000, 100_000  # steps after which a vibration that has not grown is bounded, undamped and damped
+STEPS, STEPS_DAMPED = 4000, 100_000  # steps without growth that prove a vibration bounded: undamped, damped
 PIECE, CLOSE = 20, 1e-4  # steps between two checks of a vibration, relative accuracy of an edge
 SMALL, GROWN = 1e-20, 1e6  # initial size of a vibration, and growth that distinguishes it from beating
 TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)  # time steps with measured growth, relative to the critical one
