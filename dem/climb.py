@@ -89,6 +89,6 @@ def look_closer(path: LoadPath, tolerance: float, past: int) -> None:
 
 
 def peak(path: LoadPath) -> StaticState:
-    """State in equilibrium with the largest λ below the load at which the wall fell."""
+    """State in equilibrium with the largest λ up to the upper end of the bracket."""
     most, states = np.inf if path.upper is None else path.upper, (*path.rests, *path.past)
-    return max((state for state in states if state.multiplier < most), key=lambda state: state.multiplier)
+    return max((state for state in states if state.multiplier <= most), key=lambda state: state.multiplier)

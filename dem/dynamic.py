@@ -65,10 +65,10 @@ def dem_dynamic(
         As returned by `collapse_by_steps`.
     """
     check_scene(scene)
+    finite = is_finite(displacements, "dem-dynamic", scene, distance)
     if scene.history:
         return critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), tolerance, observe=observe)
     start = time.perf_counter()
-    finite = is_finite(displacements, "dem-dynamic", scene, distance)
     points = contact_points(scene)
     run = finite_run(finite_system(scene), scene) if finite else quasi_static_run(scene)
     outcome = collapse_by_steps(
@@ -81,7 +81,7 @@ def dem_dynamic(
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
         bears=lambda: bears_dead_load(scene),
-        gives=lambda multiplier: given_displacement(scene.with_block(young=None), multiplier),
+        gives=lambda multiplier: given_displacement(scene.with_rigid_blocks(), multiplier),
         note=inertia_note(run.system.inertia_scaling),
         collapse=collapse,
         first_step=first_step,

@@ -23,6 +23,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.results.reactions import COME_FREE
 
+from .climb import BUDGET_SPENT, NO_VERDICT
 from .lead import StaticLead
 from .pushover import NOISE, LoadPath, StaticState, state_of
 from .relaxation import Rest
@@ -111,7 +112,7 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
         except KeyboardInterrupt:
             so_far = StaticTraverse([path.rests[0], *path.past])
             return replace(_arrays(outcome, lead, so_far), message="no answer: interrupted, this is the path so far")
-        if runs and run.stopped and not run.fell:  # out of budget
+        if runs and run.stopped and not run.fell:
             break
         runs.append(run)
         forces = [lead.force(state) for state in run.states]
@@ -121,7 +122,8 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     path.past = runs[-1].states[1:]
     for state in path.past:
         path.observe(path, state)
-    return _judge(_arrays(outcome, lead, runs[-1]), lead, runs, answers, tolerance)
+    cut = f"at {_at(lead, run)} {BUDGET_SPENT if path.budget <= 0 else NO_VERDICT}"
+    return _judge(_arrays(outcome, lead, runs[-1]), lead, runs, answers, tolerance, cut)
 
 
 def _spread(lead: StaticLead, answers: list[float]) -> float:
@@ -159,19 +161,23 @@ def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
     )
 
 
+def _at(lead: StaticLead, run: StaticTraverse) -> str:
+    """Last prescribed displacement of a run as text."""
+    return f"{lead.metre * abs(run.aim):.4g} m"
+
+
 def _judge(
-    outcome: Outcome, lead: StaticLead, runs: list[StaticTraverse], answers: list[float], tolerance: float
+    outcome: Outcome, lead: StaticLead, runs: list[StaticTraverse], answers: list[float], tolerance: float, cut: str
 ) -> Outcome:
-    """Outcome with the verdict on the runs and its message."""
-    run, (lower, upper) = runs[-1], (min(answers[-2:]), max(answers[-2:]))
-    at = f"{lead.metre * abs(run.aim):.4g} m"
+    """Outcome with the verdict on the runs and its message; `cut` is where and why the last run was given up."""
+    run, (lower, upper), at = runs[-1], (min(answers[-2:]), max(answers[-2:])), _at(lead, runs[-1])
     what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its path"
     what += f", in {len(run.states) - 1} steps" + (f" and in {len(runs[-2].states) - 1}" if len(runs) > 1 else "")
     what += "; small displacements" + _notes(lead, outcome)
     falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
     so_far = replace(outcome, lower=None if falls else lower, upper=upper if falls else None)
     if run.stopped and not run.fell:
-        return replace(so_far, message=f"no answer: at {at} it neither rested nor fell; {what}")
+        return replace(so_far, message=f"no answer: {cut}; {what}")
     supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
     if lead.settles and not run.fell and supports.have_come_free(last.force, last.pull):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
@@ -182,7 +188,7 @@ def _judge(
             outcome, status="collapse", multiplier=answers[-1], lower=lower, upper=upper, message=what + fall
         )
     if ends and len(answers) == 1:
-        message = f"no answer: the budget ran out in steps half as long, which are to say how sure it is; {what}"
+        message = f"no answer: {cut} in steps half as long, which are to say how sure it is; {what}"
         return replace(so_far, message=message)
     if ends:
         message = f"no answer: other steps change it by more than the tolerance; {what}"

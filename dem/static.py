@@ -112,7 +112,7 @@ def dem_static(
                     system, late = with_late_pins(system, rest.x)
                     rest = replace(rest, x=late)
                 # Elastic motion under the live load, while joints neither open nor slip.
-                moved = elastic_displacement(scene.with_block(young=None), system.equilibrium.live_unit) or 0.0
+                moved = elastic_displacement(scene.with_rigid_blocks(), system.equilibrium.live_unit) or 0.0
                 elastic, rests = moved / system.length_unit, [state_of(system, rest)]
                 hangs = 0.0 if scene.is_led else hanging_displacement(scene) / system.length_unit
                 path = LoadPath(system, far, budget - rest.solves, rests, elastic, hangs, observe=observe)

@@ -76,14 +76,14 @@ class ResultantWall:
     def move(self, intact: Mask, load: Array) -> Array | None:
         """Motion ``(nd,)`` under a load, with stiffness in intact joint modes ``(nj, 3)`` only; None if singular."""
         stiffness = np.where(intact, self.law.stiffness, 0.0).T.ravel()
-        largest = float(self.law.stiffness.max())
+        largest = float(self.law.stiffness.max(initial=0.0)) or 1.0  # if there are only pins and no joints
         inner = csr_array(self.jump.T @ diags_array(stiffness) @ self.jump)
         return held_motion(inner, self.pins, load, largest)
 
     def excess(self, force: Array) -> float:
         """Largest excess of actions ``(nj, 3)`` over Eq. 3 as a force, relative to the largest force."""
         arms = np.column_stack([np.ones_like(self.law.arm), np.ones_like(self.law.arm), self.law.arm])
-        largest = float(np.abs(force / arms).max())
+        largest = float(np.abs(force / arms).max(initial=0.0))
         return max(0.0, float((self.law.excess(force) / arms).max())) / largest if largest > 0 else 0.0
 
     def actions(self, motion: Array) -> Array:
@@ -165,7 +165,7 @@ def load_step(wall: ResultantWall, force: Array, load: Array) -> LoadStep:
         if solved is None:
             return LoadStep("singular", force, motion, solves)
         motion, added = solved, wall.actions(solved)
-        scale = max(float(np.abs(kept + added)[:, :2].max()), float(np.abs(load).max()))
+        scale = max(float(np.abs(kept + added)[:, :2].max(initial=0.0)), float(np.abs(load).max()))
         violated = wall.law.violated(force + added, ROUNDING * scale)
         now: Mask = ~(violated | violated[:, [DETACHED]])
         if np.array_equal(now, intact):

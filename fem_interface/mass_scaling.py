@@ -143,9 +143,9 @@ def _smallest_bound(kinds: list[_Kind], damping: float, viscous: float, fit: flo
     """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself if `fit` is None."""
 
     def bound(square: float) -> float:
-        return max(_bound(kind, square, damping, viscous, fit or square) for kind in kinds)
+        return max((_bound(kind, square, damping, viscous, fit or square) for kind in kinds), default=0.0)
 
-    low = high = _rigid_bound(kinds) or 1.0  # zero if pins leave no rigid motion and blocks can only deform
+    low = high = _rigid_bound(kinds) or 1.0  # zero if pins leave no rigid motion: blocks can only deform, if at all
     while bound(high) > high:
         low, high = high, 2 * high
     while high > low * (1 + FREQUENCY_TOLERANCE):

@@ -113,7 +113,7 @@ def fem(
     words = (("points", points, PointsOn), ("cracks", cracks, Cracks), ("loads", loads, Loads))
     for setting, word, known in (*words, ("energies", energies, Energies)):
         one_of(f"model fem: {setting}", word, get_args(known))
-    finite = bool(scene.history) or is_finite(displacements, "fem", scene, distance)
+    finite = is_finite(displacements, "fem", scene, distance) or bool(scene.history)
     if finite:
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):

@@ -86,9 +86,9 @@ def homog(scene: Scene) -> Outcome:
     """Collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
 
     The scene is a full rectangular panel on a frictional base or a fixed first course, from whose top its height is
-    then measured; any other scene raises a `SceneError`. Crushing is neglected. The outcome has no bracket: a mechanism
-    of the continuum proves that the multiplier is an upper bound for the continuum, but for the wall of blocks it is an
-    estimate that may be too high or too low.
+    then measured; any other scene raises a `SceneError`, also one whose joints crush. The outcome has no bracket: a
+    mechanism of the continuum proves that the multiplier is an upper bound for the continuum, but for the wall of
+    blocks it is an estimate that may be too high or too low.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -147,6 +147,8 @@ def _refusal(scene: Scene, bond: Bond) -> str:
         return "it needs one material of blocks and one of joints"
     if joint.cohesion > 0:
         return "it needs dry joints, joint.cohesion = 0"
+    if joint.compressive_strength is not None:
+        return "it needs joints that do not crush, without joint.compressive_strength"
     if joint.inset > 0:
         return "it needs sharp corners, joint.inset = 0"
     movable = ~scene.fixed

@@ -105,7 +105,7 @@ def run_tasks(
         tasks again resumes from there.
     """
     if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs == 0:
-        raise SceneError("jobs", "must be a number of processes, or -1 for one a core", jobs)
+        raise SceneError("jobs", "must be a number of processes, or -1 for one per core", jobs)
     campaign = Campaign()
     scenes = {task.cell: task.scene for task in tasks}
     try:

@@ -33,15 +33,15 @@ def rows(scene: Scene) -> list[Row]:
 
 def _blocks(scene: Scene) -> Iterator[Row]:
     low, high = scene.blocks.extent(scene.wall)
-    pieces = scene.part_of[scene.masonry]
-    parts = "" if len(pieces) == len(set(pieces)) else f" in {len(pieces)} parts"
-    yield "blocks", f"{len(set(pieces))}{parts}, of which {int((scene.wall & scene.fixed).sum())} held"
+    count, pieces = scene.count_blocks(scene.wall), int(scene.masonry.sum())
+    parts = "" if pieces == count else f" in {pieces} parts"
+    yield "blocks", f"{count}{parts}, of which {scene.count_blocks(scene.fixed)} held"
     for k in used_block_materials(scene):
         own, material = (scene.material_of_block == k) & scene.masonry, scene.block_materials[k]
         mass = float(scene.mass[own].sum())
-        count = counted(len(set(scene.part_of[own])), "block")
+        blocks = counted(scene.count_blocks(own), "block")
         thick = f" and {material.thickness:.4g} m" if material.thickness else ""
-        yield f"  of {material.name}", f"{count} of {material.density:g} kg/m³{thick}, {_mass(scene, mass)}"
+        yield f"  of {material.name}", f"{blocks} of {material.density:g} kg/m³{thick}, {_mass(scene, mass)}"
     ends = [[signed(scene.blocks.coordinate(float(value))) for value in corner] for corner in (low, high)]
     x, y = (" … ".join(both) for both in zip(*ends, strict=True))
     yield "extent", f"x {x} m, y {y} m, {thickness_text(scene)}"
@@ -74,7 +74,8 @@ def _held(scene: Scene) -> Iterator[Row]:
     """Rows for supports, the beam and ties."""
     ground = int((~scene.wall).sum())
     held = [f"ground in {counted(ground, 'piece')}" if ground > 1 else "ground"] if ground else []
-    held += [counted(int((scene.wall & scene.fixed).sum()), "fixed block")] if (scene.wall & scene.fixed).any() else []
+    fixed = scene.count_blocks(scene.fixed)
+    held += [counted(fixed, "fixed block")] if fixed else []
     pins = scene.pins.direction.any(axis=1)
     for block in np.unique(scene.pins.block[pins]):
         own = (scene.pins.block == block) & pins

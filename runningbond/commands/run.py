@@ -92,7 +92,7 @@ def run(
     check_tolerance(tolerance, "--tolerance")
     for option, value in (("--scatter", scatter), ("--jobs", jobs)):
         if draws is None and value is not None:
-            raise SceneError(option, "goes with --draws alone", value)
+            raise SceneError(option, "only goes with --draws", value)
     wall = read_scene(find_scene(scene))
     check_goes_far(chosen, wall, displacements, distance, FLAG)
     if draws is not None:

@@ -49,7 +49,7 @@ def _whole(_: type, tokens: Sequence[Token]) -> int:
 
 
 SceneName: TypeAlias = Annotated[str, Parameter(help="Scene file, or the name of a published scene such as panel-01.")]
-Tolerance: TypeAlias = Annotated[float, Parameter(help="Relative width of the bracket asked for.")]
+Tolerance: TypeAlias = Annotated[float, Parameter(help="Requested relative width of the bracket.")]
 Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Json: TypeAlias = Annotated[bool, Parameter(negative="", help="Print one JSON object and nothing else.")]
 Whole: TypeAlias = Annotated[int, Parameter(converter=_whole)]
@@ -58,7 +58,7 @@ Whole: TypeAlias = Annotated[int, Parameter(converter=_whole)]
 def check_jobs(jobs: int) -> None:
     """Refuse an invalid number of processes."""
     if jobs == 0 or jobs < -1:
-        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+        raise SceneError("--jobs", "must be a number of processes, or -1 for one per core", jobs)
 
 
 def say(message: str) -> None:

@@ -20,7 +20,9 @@ class Pushover:
     """A wall pushed at a prescribed speed."""
 
     curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, interval by interval
-    peak: float  # largest multiplier of the curve, without its soft start
+    # Largest multiplier of the curve without its soft start, in which the multiplier includes the force that sets the
+    # wall in motion. If the wall's strength peaks within it, the peak is missed; a shorter distance shows it.
+    peak: float
     rate_error: float  # change of the peak when the speed was last halved; inf if it was never halved
     state: State  # the wall at the end
 
@@ -29,15 +31,18 @@ def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200
     """Push a wall until its control point has moved a distance [m], starting from a copy of a state.
 
     The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the multiplier
-    follows. The push takes `steps` if everything moves as far as the control point, and usually fewer.
+    follows. The push takes `steps` if everything moves as far as the control point, and usually fewer; the curve has
+    one point for each of at most `pieces` intervals, which are at least one step long.
     """
     system, state = run.system, start.copy()
     power = float(distance * np.abs(system.live).sum()) / (steps * run.dt)
+    pieces = min(pieces, steps)
     soft = max(1, pieces // 20)
     rows: list[tuple[float, float]] = []
     given = run.given(state)
     for row in range(pieces):
-        multiplier = run.drive(state, power * min(1.0, (row + 1) / soft), steps // pieces, given=given)
+        length = (row + 1) * steps // pieces - row * steps // pieces
+        multiplier = run.drive(state, power * min(1.0, (row + 1) / soft), length, given=given)
         rows.append((float(system.control @ state.motion), multiplier))
         if rows[-1][0] >= distance:
             break

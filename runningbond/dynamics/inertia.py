@@ -6,7 +6,7 @@ each of its three motions separately, that none of them is faster than the media
 slowest vibrations of a wall, which decide how soon it rests, consist mainly of that motion and change very little.
 
 Slips start waves, which such blocks keep longer: dashpots in the joints are four times as strong as elsewhere. With the
-usual ones panel-12 takes one branch or another if the loading rate changes by a tenth (docs/fem-study.md).
+usual ones panel-12 takes one branch or another if the loading rate changes by a sixth (docs/fem-study.md).
 """
 
 import numpy as np

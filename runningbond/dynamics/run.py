@@ -367,7 +367,7 @@ class Run:
         """Note on joints that are crushed in a state; empty if none is."""
         crushed = self.interface.law.crushed(state.history).any()
         return (
-            "crushed joints carry bending at discrete points, to 3 to 5 %, which the bracket does not include"
+            "crushed joints carry bending at points, with an error of 3 to 5 % that the bracket does not include"
             if crushed
             else ""
         )

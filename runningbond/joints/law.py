@@ -188,9 +188,10 @@ class KernelLaw:
         return history[self.law.row(PLASTIC_CLOSURE)].copy() if known else np.zeros(self.points)
 
     def crushed(self, history: Array) -> Array:
-        """How far each point has been crushed [m], for a history ``(rows, np)``; zero without a plastic closure."""
-        closure = self.plastic_closure(history)
-        return np.where(history[self.law.row(CRUSHING)] > 0, closure, 0.0) if CRUSHING in self.law.history else closure
+        """How far each point has been crushed [m], for a history ``(rows, np)``; zero without a `CRUSHING` row."""
+        if CRUSHING not in self.law.history:
+            return np.zeros(self.points)
+        return np.where(history[self.law.row(CRUSHING)] > 0, self.plastic_closure(history), 0.0)
 
     def damage(self, history: Array) -> Array:
         """Damage of each point, for a history ``(rows, np)``; zero for a law without damage."""

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Container, Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -115,16 +116,24 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
         text = path.read_bytes().decode("utf-8-sig")
         told = [line for line in text.splitlines() if line.strip() and not line.startswith(COMMENT)]
         separator = max(SEPARATORS, key=told[0].count) if told else ","
-        reader = csv.reader(io.StringIO(text, newline=""), strict=True, delimiter=separator)
-        for cells in reader:
+        rest, number = io.StringIO(text, newline=""), 0
+        for line in rest:
+            number += 1
+            if line.startswith(COMMENT):
+                continue
+            reader = csv.reader(chain([line], rest), strict=True, delimiter=separator)
+            try:
+                cells = next(reader)
+            finally:
+                number += reader.line_num - 1  # a quoted entry may have several lines
             if any(cell.strip() for cell in cells) and not cells[0].startswith(COMMENT):
-                yield reader.line_num, cells if separator == "," else [_with_point(cell) for cell in cells]
+                yield number, cells if separator == "," else [_with_point(cell) for cell in cells]
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
         raise SceneError(path.name, "is not a table: it is not UTF-8 text") from error
     except csv.Error as error:
-        raise SceneError(f"{path.name}, line {reader.line_num}", f"is not a line of a CSV file: {error}") from error
+        raise SceneError(f"{path.name}, line {number}", f"is not a line of a CSV file: {error}") from error
 
 
 def _with_point(cell: str) -> str:

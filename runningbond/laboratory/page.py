@@ -26,15 +26,17 @@ from .summary import model_errors, percent, summary_sheet, totals, verdicts
 
 NAME = "laboratory"
 OVER_COST = (
-    "Error against experiment over cost: a point a wall, large the median of a model, and what is worked out by hand."
+    "Error against experiment over cost: one point per wall; large points are medians of models, dashed lines formulas "
+    "worked out by hand."
 )
 LEGEND = (
-    "ΔV is the predicted strength over the measured one, less 1; of a wall pushed to and fro they are means of both. "
-    "*Stiffness* is the ratio of secants at 0.3 of the strength, *at peak* and *at 0.8* of displacements there and "
-    "where it has fallen to 0.8 of it. *Cycles* is the mean ratio of peaks of cycles, *energy* that of the dissipated "
-    "work, *residual* that of the largest displacement without force. Modes: rocking with toe crushing R/TC, a stepped "
-    "diagonal F, sliding SL; a prediction is right where the report names it. A dash is a number that does not exist. "
-    "No parameter is fitted to a test."
+    "ΔV is the predicted strength divided by the measured one, minus 1; the strength of a wall that is pushed to both "
+    "sides is the mean of both. Other columns are ratios of predicted to measured values: *stiffness* of the secant at "
+    "0.3 of the strength, *at peak* and *at 0.8* of the displacements at the largest force and where the force has "
+    "fallen to 0.8 of it, *cycles* of the peaks of cycles (mean), *energy* of the dissipated work, *residual* of the "
+    "largest displacement without force. Modes: R/TC is rocking with toe crushing, F a stepped diagonal crack, SL "
+    "sliding; a prediction is right if the report names its mode. A dash means that there is no such value. No "
+    "parameter is fitted to a test."
 )
 
 

@@ -7,6 +7,7 @@ has no dilatancy, it is an upper bound.
 
 import time
 from dataclasses import dataclass, replace
+from decimal import ROUND_CEILING, Context
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from .proved import CLOSE, STOP, fall_at_rest, is_large, proved, resting_forces,
 from .repair import ROUNDING
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
-INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
+INTERRUPTED = "the linear program was interrupted"
 ZERO_MULTIPLIER = 1e-6
 """Multiplier, in `Equilibrium.live_unit`, below which widths of brackets are relative to this value: λ may be zero."""
 
@@ -39,6 +40,9 @@ STRENGTH_CAP = 1e6
 
 Joints rarely reach such strengths, and numbers that large would swamp the other forces of the program.
 """
+
+BOUND_MARGIN = 5e-10
+"""Relative amount by which `proved_bound` raises a bound before rounding it up; at most half of the ninth digit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -366,10 +370,13 @@ def remarks(scene: Scene, message: str) -> str:
 def proved_bound(scene: Scene) -> float | None:
     """Multiplier above which the wall cannot stand, if `limit` proves one; Ctrl-C raises KeyboardInterrupt.
 
-    It is raised by 1e-9 and rounded to nine digits: more digits differ by machine, and load steps depend on it.
+    It is rounded up to nine digits: more digits differ by machine, and load steps depend on it. It is first raised by
+    `BOUND_MARGIN`, because otherwise the last bits of a bound such as 0.5 would decide whether its ninth digit changes.
     """
     upper = proved_outcome(scene).upper
-    return None if upper is None else float(f"{upper + 1e-9 * abs(upper):.9g}")
+    if upper is None:
+        return None
+    return float(Context(9, ROUND_CEILING).create_decimal_from_float(upper + BOUND_MARGIN * abs(upper)))
 
 
 def proved_outcome(scene: Scene) -> Outcome:

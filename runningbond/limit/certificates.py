@@ -27,6 +27,9 @@ PENETRATION = 1e-6
 REPAIR_FREEDOMS = 700
 """Degrees of freedom from which interior point and repair find the loads that drive a mechanism faster than HiGHS."""
 
+TOUCHING = 1e-9
+"""Relative distance up to which two intervals of loads count as touching."""
+
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
@@ -122,7 +125,7 @@ def certified_loads(
     pairs = sorted((min(pair), max(pair)) if falling else pair for pair in ends)
     merged = [pairs[0]]
     for low, high in pairs[1:]:
-        if low <= merged[-1][1] + 1e-9 * abs(merged[-1][1]):
+        if low <= merged[-1][1] + TOUCHING * abs(merged[-1][1]):
             merged[-1] = merged[-1][0], max(high, merged[-1][1])
         else:
             merged.append((low, high))

@@ -6,7 +6,6 @@ true domain, yields an upper bound. The point at which that function takes its v
 the program solved again, until the bounds are as close as required (Dantzig & Wolfe 1960).
 """
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -219,11 +218,8 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
     without = replace(
         point, forces=np.where(idle, 0.0, point.forces), compliance=np.where(idle, IDLE_FORCE, 1.0) * point.compliance
     )
-    tried: list[Array | None] = []
-    motion = None
-    with suppress(RuntimeError):  # the metric is singular if too few resultants are in use
-        motion = admissible(arguments, point)
-        tried = [balanced(arguments, each, within) for each in (point, without)]
+    motion = admissible(arguments, point)
+    tried = [balanced(arguments, each, within) for each in (point, without)]
     forces = max((each for each in tried if each is not None), key=lambda each: float(each[-1]), default=None)
     if motion is not None and program.system.live @ motion[: program.system.freedoms] <= 0:
         motion = None

@@ -74,7 +74,7 @@ class Descent:
         driving = driving_forces(self.system, motion)
         if driving is None:
             return None, None
-        forces = self.programs.corner(driving, random_weights(len(self.system.points), rng), pivots=WALK_PIVOTS)
+        forces = self.programs.vertex(driving, random_weights(len(self.system.points), rng), pivots=WALK_PIVOTS)
         if forces.status != "optimal":
             return None, None
         return self.programs.mechanism(forces, self._weights(rng)), forces

@@ -24,7 +24,8 @@ Aim: TypeAlias = Literal["largest", "smallest", "zero"]
 """Objective of a program: the largest or smallest multiplier, or whether forces balance at the multiplier zero."""
 
 ProgramStatus: TypeAlias = Literal["optimal", "budget", "infeasible", "unbounded", "numerical"]
-STATUS: dict[int, ProgramStatus] = {0: "optimal", 1: "budget", 2: "infeasible", 3: "unbounded", 4: "numerical"}
+STATUS: dict[int, ProgramStatus] = {0: "optimal", 1: "numerical", 2: "infeasible", 3: "unbounded", 4: "numerical"}
+"""Status by scipy's number; 1 is a limit of iterations, not Ctrl-C, after which the status is ``budget``."""
 
 BALANCE_TOLERANCE = 1e-6
 """Sum of unbalanced forces, relative to the largest entry of the load, up to which the load counts as balanced."""

@@ -93,15 +93,15 @@ def _sequence(
         if program.status != "optimal":
             return
         if k in looked_at:
-            corners = _corners(system, place, pressure, program.motion, found)
-            certified = (roughly_certified(system, corner, found.add_programs) for corner in corners)
+            vertices = _vertices(system, place, pressure, program.motion, found)
+            certified = (roughly_certified(system, vertex, found.add_programs) for vertex in vertices)
             found.certificates += islice(filter(None, certified), 1)  # only the first one certified
             if found.certificates:
                 return
         observe(found)
 
 
-def _corners(
+def _vertices(
     system: Equilibrium, place: Array | None, pressure: Array, motion: Array, found: SearchLog
 ) -> Iterator[Array]:
     """Mechanisms ``(nd,)`` at vertices of the program whose mix is `motion`: of the glued wall, or of the full wall."""
@@ -109,20 +109,20 @@ def _corners(
         mixed = driving_forces(system, motion, MIX_TOLERANCE)
         found.add_programs(1)
         if mixed is not None and near(system, mixed, "smallest").status == "optimal":
-            corner = _corner(system, pressure, found)
-            if corner.status == "optimal":
-                yield corner.motion
+            vertex = _vertex(system, pressure, found)
+            if vertex.status == "optimal":
+                yield vertex.motion
         return
     last = 0
     for least in STILL_LEVELS:
         glued = glue(system, place, still_points(system, motion, least))
         if last < glued.system.freedoms <= VERTEX_FREEDOMS:
             last = glued.system.freedoms
-            corner = _corner(glued.system, pressure[glued.points], found)
-            if corner.status == "optimal":
-                yield glued.motions @ corner.motion
+            vertex = _vertex(glued.system, pressure[glued.points], found)
+            if vertex.status == "optimal":
+                yield glued.motions @ vertex.motion
 
 
-def _corner(system: Equilibrium, pressure: Array, found: SearchLog) -> ForceSolution:
+def _vertex(system: Equilibrium, pressure: Array, found: SearchLog) -> ForceSolution:
     found.add_programs(1)
     return solve_forces(system, frozen_friction(system.strength, pressure))

@@ -15,7 +15,7 @@ from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
 
 from .associated import LimitState, arrays_of, dead_load_fall, judge, limit_state, remarks, so_far, uses_cut_strength
 from .canonical import Order, canonical_order
-from .certificates import Certificate, certified_loads, certify, least_multiplier
+from .certificates import TOUCHING, Certificate, certified_loads, certify, least_multiplier
 from .coarse import COARSE_POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
@@ -164,9 +164,9 @@ def _associated(system: Equilibrium) -> ForceSolution:
 
 
 def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: SearchLog) -> list[Certificate]:
-    """Certificates by smallest load, the lowest and highest one proved on the unrounded equations.
+    """Certificates by smallest load, proved on the unrounded equations: lowest, highest, and those needed in between.
 
-    Those that fail there, or dissipate at strengths reduced from `full`, are left out; those in between stay as found.
+    Those that fail there, or dissipate at strengths reduced from `full`, are left out.
     """
     certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
     certificates = [each for each in certificates if not uses_cut_strength(full, system, each.motion, dilatancy=0.0)]
@@ -187,7 +187,28 @@ def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: 
         for each in certificates
         if proved[0].least.multiplier <= each.least.multiplier and each.most.multiplier <= proved[-1].most.multiplier
     ]
-    return sorted([*proved, *inside], key=least_multiplier)
+    return sorted(_filled(system, proved, inside), key=least_multiplier)
+
+
+def _filled(system: Equilibrium, proved: list[Certificate], others: list[Certificate]) -> list[Certificate]:
+    """Proved certificates, and as few of some others as prove, together with them, all loads of the others.
+
+    Where the proved loads end, the one of the others that reaches farthest is proved or, if none contains that load,
+    the next one above.
+    """
+    proved, others, end = list(proved), list(others), proved[0].most.multiplier
+    while True:
+        reach = end + TOUCHING * abs(end)
+        starts = {each: max(reach, least_multiplier(each)) for each in (*proved, *others) if _height(each) > reach}
+        if not starts:
+            return proved
+        following = min(starts, key=lambda each: (starts[each], each in others, -_height(each)))
+        if following in others:
+            others.remove(following)
+            again = certify(system, following.motion)
+            proved += [] if again is None else [again]
+        else:
+            end = _height(following)
 
 
 def _depth(certificate: Certificate) -> float:

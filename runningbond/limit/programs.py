@@ -36,7 +36,7 @@ SEQUENCE_PIVOTS = 5_000
 """Simplex pivots in one program of a sequence after which interior point and crossover solve it; in walls of 600 blocks
 they take less time than so many pivots."""
 
-Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
+Vertices: TypeAlias = "Sequence[highspy.HighsBasis | None]"
 """Vertices from which the models of `Programs` start; None starts without one."""
 
 
@@ -67,14 +67,14 @@ class Programs:
         self._power = mechanism_scale(system)
 
     @property
-    def corners(self) -> Corners:
+    def vertices(self) -> Vertices:
         """The last vertices of all models."""
-        return [each.corner for each in self._models]
+        return [each.vertex for each in self._models]
 
-    def go_to(self, corners: Corners) -> None:
+    def start_from(self, vertices: Vertices) -> None:
         """Start from these vertices, independently of all programs solved before."""
-        for model, corner in zip(self._models, corners, strict=True):
-            model.go_to(corner)
+        for model, vertex in zip(self._models, vertices, strict=True):
+            model.start_from(vertex)
 
     def frozen(self, pressure: Array) -> ForceSolution:
         """Forces at the largest load with shear resistances frozen at those of a pressure ``(np,)``."""
@@ -95,7 +95,7 @@ class Programs:
         rough = near(self.system, forces, aim)
         return rough if rough.status != "optimal" else solve_forces(self.system, forces, aim)
 
-    def corner(
+    def vertex(
         self, forces: ForceSet, weights: Array, multiplier: float | None = None, pivots: int | None = None
     ) -> ForceSolution:
         """Vertex of a set with the smallest sum of weighted pressures, weights ``(np,)``, or one on the way there.

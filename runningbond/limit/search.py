@@ -18,7 +18,7 @@ from .certificates import least_multiplier
 from .descent import is_lower
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution
-from .programs import Corners, Programs
+from .programs import Programs, Vertices
 from .search_log import Observer, SearchLog
 from .starts import ORIGINS, ROUND, Start
 
@@ -58,14 +58,15 @@ def search(
     """Search for certificates from many seeded starts; a keyboard interrupt keeps those that were found.
 
     `observe` is called after every round; `workers` starts run in parallel, and none begins after `most` linear
-    programs (by default `programs_allowed` more). The results are added to those `found` before. If the centroids of
-    movable blocks are given as `place` ``(n, 2)`` [m], neighbourhoods are searched, too.
+    programs (by default `programs_allowed` more), except that a small wall's search without any certificate makes one
+    more round, in which interior points decide on mechanisms. The results are added to those `found` before. If the
+    centroids of movable blocks are given as `place` ``(n, 2)`` [m], neighbourhoods are searched, too.
     """
     found = SearchLog() if found is None else found
     found.dry, made, stopped = 0, 0, Event()
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
-    corners: Corners = (None, None, None)
+    vertices: Vertices = (None, None, None)
     patient = len(system.points) >= PATIENT_POINTS
     most = found.cost + programs_allowed(system) if most is None else most
     while made < starts:
@@ -73,7 +74,7 @@ def search(
             programs.asks_interior_point = patient
         numbers = range(made, min(starts, made + ROUND) if made else 1)
         before = sorted(found.certificates, key=least_multiplier)
-        batch = [Start(number, associated, before, dict(known), place, corners) for number in numbers]
+        batch = [Start(number, associated, before, dict(known), place, vertices) for number in numbers]
         try:
             _run(batch, crew)
         except KeyboardInterrupt:
@@ -83,14 +84,16 @@ def search(
             known |= start.known
             _merge(found, start.found)
         made += len(batch)
-        corners = crew[0].corners if made == 1 else corners
+        vertices = crew[0].vertices if made == 1 else vertices
         observe(found)
         if found.interrupted or found.frictionless:
             break
         if found.dry >= dry_allowed(system) or found.cost > most:
             if patient or found.certificates:
                 break
-            patient = True  # mechanisms left undecided by the simplex method may be the only ones
+            # Mechanisms left undecided by the simplex method may be the only ones. This round is the last, unless it
+            # finds one and `most` is not reached.
+            patient = True
             known.clear()
     return found
 

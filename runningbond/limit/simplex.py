@@ -70,15 +70,15 @@ class Simplex:
         self._highs.passModel(program)
 
     @property
-    def corner(self) -> highspy.HighsBasis:
+    def vertex(self) -> highspy.HighsBasis:
         """Final vertex of the last program."""
         return self._highs.getBasis()
 
-    def go_to(self, corner: highspy.HighsBasis | None) -> None:
+    def start_from(self, vertex: highspy.HighsBasis | None) -> None:
         """Start the next program from a vertex, or from none, so that it does not depend on earlier programs."""
         self._highs.clearSolver()
-        if corner is not None and corner.valid:
-            self._highs.setBasis(corner)
+        if vertex is not None and vertex.valid:
+            self._highs.setBasis(vertex)
 
     def solve(
         self, low: Array, high: Array, cost: Array, method: int = DUAL, pivots: int | None = None

@@ -18,7 +18,7 @@ from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
 from .macro import Glued, still_points
 from .neighbourhood import certificates_near, distances, neighbourhood, one_of
-from .programs import Corners, Programs
+from .programs import Programs, Vertices
 from .search_log import SearchLog
 from .sequences import WEIGHTS, averaged, certified, short_sequence
 
@@ -41,7 +41,10 @@ ORIGINS: tuple[Origin, ...] = (
     *("random", "balanced", "known", "neighbourhood"),
     *("known", "balanced", "known", "neighbourhood"),
 )
-"""Origins of every `ROUND` consecutive starts, in turn."""
+"""Origins of starts 0 to 3, 4 to 7, etc., in turn; 0 to 2 begin from the associated solution whatever their origin.
+
+Rounds end one start later, so that the last start of a round has the origin of the next one's first three.
+"""
 
 LOWEST_SHARE = 0.5
 """Probability that a start from a known certificate takes the lowest one."""
@@ -70,7 +73,7 @@ class Start:
         Forces at the smallest load of mechanisms already solved, by jump pattern.
     place
         Centroids of the movable blocks ``(n, 2)`` [m], if neighbourhoods are to be searched.
-    corners
+    vertices
         Vertices from which its programs start.
     """
 
@@ -79,13 +82,13 @@ class Start:
     before: Sequence[Certificate]
     known: dict[bytes, ForceSolution | None]
     place: Array | None = None
-    corners: Corners = (None, None, None)
+    vertices: Vertices = (None, None, None)
     found: SearchLog = field(default_factory=SearchLog)
 
     def run(self, programs: Programs) -> None:
         """Search for certificates, and record them as they are found."""
         solved = programs.solved
-        programs.go_to(self.corners)
+        programs.start_from(self.vertices)
         descent, rng = Descent(programs, self.known), np.random.default_rng([0, self.number + 1])
         try:
             for certificate in self._certificates(descent, rng):
@@ -167,14 +170,14 @@ class Start:
             return first.pressure if first.status == "optimal" else np.zeros(len(system.points))
         rng = np.random.default_rng([1, self.number])
         top = self.associated.multiplier if bounded else 1.0
-        share = rng.random() if self.number > 3 else 0.0
+        share = rng.random() if self.number > 3 else 0.0  # start 3, a random one, needs none
         weights = random_weights(len(system.points), rng)
         if self.before and self._origin in ("known", "neighbourhood"):
             return self._scattered(descent.system, self._base(rng).least.pressure, rng)
         if self._origin == "random":
             return weights * (self.associated.pressure.mean() if bounded else 1.0)
         load = share * top if top > 0 else (1 + share) * top
-        state = descent.programs.corner(coulomb(system.strength), weights, load, START_PIVOTS)
+        state = descent.programs.vertex(coulomb(system.strength), weights, load, START_PIVOTS)
         if state.status == "optimal":
             return state.pressure
         return self.associated.pressure * rng.lognormal(size=len(weights)) if bounded else weights

@@ -221,7 +221,7 @@ def run_model(
     if observe is not None:
         check_observer("observe", observe)
     model.check(scene)
-    if model in _EVERY_MODEL:
+    if model.name in {own.name for own in _EVERY_MODEL}:  # also one that `going_far` has set to finite displacements
         check_settings(model.name, scene, parameters)
     if observe is not None and (model.observer or model.progress):
         parameters["observe"] = observe
@@ -258,7 +258,7 @@ def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     from dem.static import FALLEN
 
     if "block.young" not in model.reads:
-        scene = scene.with_block(young=None)
+        scene = scene.with_rigid_blocks()
     gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
     moved, load = outcome.curve.T
     low, high = scene.blocks.extent(scene.wall)

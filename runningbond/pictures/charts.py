@@ -25,8 +25,9 @@ def bare(axes: "Axes") -> None:
 
 
 def looks_of(names: Sequence[Any]) -> Looks:
-    """Assign the entries of `LOOKS` to names, in order."""
-    return dict(zip(names, LOOKS, strict=False))
+    """Assign the entries of `LOOKS` to names, in order; further names get the same colours with other markers."""
+    n, (colours, markers) = len(LOOKS), zip(*LOOKS, strict=True)
+    return {name: (colours[k % n], markers[(k + k // n) % n]) for k, name in enumerate(names)}
 
 
 def series(

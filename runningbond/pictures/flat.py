@@ -84,7 +84,8 @@ def figure_of(
     if numbers:
         smallest = min(one.label.size for one in block_numbers(scene, metres_of_point(room.extent, (WIDTH, TALLEST))))
         enlarged = float(np.clip(SMALLEST_NUMBER / smallest, 1.0, LARGEST_SHEET))
-        room = room_for([shape], shape.extent, (enlarged * WIDTH, enlarged * TALLEST), numbers=numbers)
+        size = enlarged * WIDTH, enlarged * TALLEST
+        room = room_for([shape], shape.extent, size, numbers=numbers, thrust=thrust)
     figure, axes = figure_with_room(room.extent, caption, enlarged, make)
     _draw(axes, shape, caption, room, thrust=thrust, numbers=numbers)
     return figure

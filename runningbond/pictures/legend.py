@@ -29,9 +29,10 @@ def wall_caption(scene: Scene) -> Caption:
     used = used_block_materials(scene)
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
     density += "" if any(scene.load.gravity) else ", no gravity"
-    n = int(scene.part_of.max()) + 1
+    n, cracks = scene.count_blocks(scene.wall), int(scene.joints.inner.sum())
     size = f"{length:.4g} × {height:.4g} m, {thickness_text(scene)}{density}"
-    counts = f"{counted(n, 'block')}, {counted(len(scene.joints), 'joint')}"
+    counts = f"{counted(n, 'block')}, {counted(len(scene.joints) - cracks, 'joint')}"
+    counts += f", {counted(cracks, 'potential crack')}" if cracks else ""
     key = [*_materials(scene), *_bodies(scene), *_loads(scene)]
     return Caption(wall_title(scene.title), "", [size, counts], key, columns=1)
 

@@ -161,11 +161,18 @@ class LoadDrawing:
             self._turn(self.scene.blocks.centroid[block], moment, live, colour, name, said)
 
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
-        size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
+        size = self._size(force, live=live)
         direction = unit_vector(np.array(force))
         within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # all may be outside at a corner
         ahead, behind = (self._inside(within + side * 0.5 * self.a * direction) for side in (1, -1))
         self._force(self.shape.drawn_at(at, block), direction, size, colour, name, pulls=behind and not ahead)
+
+    def _size(self, force: tuple[float, float], *, live: bool) -> str:
+        """Label of a point force; if λ is a force P, a multiple of P."""
+        size = math.hypot(*force)
+        if live and is_force(self.scene):
+            return "P" if math.isclose(size, 1.0) else f"{minus(size)} P"
+        return times_lambda(readable(size, "N"), live=live)
 
     def _force(
         self,
@@ -282,9 +289,7 @@ class LoadDrawing:
     def _drive_text(self, beam: Beam, load: BeamLoad, live: bool) -> tuple[str, str, str, bool]:
         path = beam.drive.path if beam.drive and live else ()
         if not path:
-            unit = live and is_force(self.scene)
-            text = "P" if unit else times_lambda(readable(math.hypot(*load.force), "N"), live=live)
-            return text, *_look(live), False
+            return self._size(load.force, live=live), *_look(live), False
         if len(path) == 1:
             return f"u = {millimetres(path[0])}", MOTION, "motion", False
         low, high = min(path), max(path)

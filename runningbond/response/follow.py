@@ -211,7 +211,7 @@ def follow(
         Time for which the run continues once a block has fallen [s].
     points : (k, 2) float, optional
         Points to follow [m], within a block's size of the wall, each fixed to the movable block that contains it or
-        has the nearest corner; by default the wall's upper corners.
+        has the nearest corner, and none on a fixed block; by default the wall's upper corners.
     rows
         Rows per second, or per record if that is shorter than one second.
     observe
@@ -235,7 +235,10 @@ def follow(
 
 
 def _places(rest: Resting, points: Array) -> Array:
-    """Checked points to follow, ``(k, 2)`` [m]: above the ground, because drifts are relative to their heights."""
+    """Checked points to follow, ``(k, 2)`` [m], on no fixed block.
+
+    They are above the ground, because drifts are relative to their heights.
+    """
     try:
         places = np.array(points, dtype=float)
     except (TypeError, ValueError):
@@ -250,6 +253,8 @@ def _places(rest: Resting, points: Array) -> Array:
         if (place < low - near).any() or (place > high + near).any():
             box = " and ".join("[{:.4g}, {:.4g}]".format(*corner) for corner in (low, high))
             raise SceneError(f"points[{k}]", f"must lie on the wall, which is between {box} m", place.tolist())
+        if (holding := rest.scene.blocks.containing(place)).size and rest.scene.fixed[holding].all():
+            raise SceneError(f"points[{k}]", "must lie on a block that can move, not on what is fixed", place.tolist())
     return places
 
 

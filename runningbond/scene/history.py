@@ -76,8 +76,12 @@ class History(Action):
     def __post_init__(self) -> None:
         one_of(f"{KEY}.quantity", self.quantity, QUANTITIES)
         object.__setattr__(self, "scale", FACTOR.take(f"{KEY}.scale", self.scale))
-        time, values = frozen(self.time), frozen(np.reshape(self.values, (len(self.time), 2)))
-        if len(time) < 2 or not (np.isfinite(values).all() and (np.diff(time) > 0).all()):
+        try:
+            time = frozen(np.reshape(self.time, (len(self.time),)))
+            values = frozen(np.reshape(self.values, (len(time), 2)))
+        except (TypeError, ValueError):
+            raise SceneError(KEY, "must have a list of times, and [horizontal, vertical] for each of them") from None
+        if len(time) < 2 or not (np.isfinite(time).all() and np.isfinite(values).all() and (np.diff(time) > 0).all()):
             raise SceneError(KEY, "must have two samples at least, finite, at times that ascend")
         object.__setattr__(self, "time", frozen(time - time[0]))
         object.__setattr__(self, "values", values)

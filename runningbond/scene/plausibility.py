@@ -148,9 +148,11 @@ def _sizes(scene: Scene) -> Iterator[str]:
             hint = f"; are {thickness:g} mm meant?" if least <= 1e-3 * thickness <= most else ""
             yield f"{key} = {thickness:g}: {what}{hint}"
     yield from GRAVITY.doubts("load.gravity", float(np.hypot(*scene.load.gravity)))
-    moved = float(np.hypot(*scene.support_motion[:, :2].T).max())
+    farthest = 1.0 if scene.settlement is None else scene.settlement.farthest
+    moved = farthest * float(np.hypot(*scene.support_motion[:, :2].T).max())
     if moved > LARGEST_SETTLEMENT * longest:
-        yield f"load.live.by = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
+        along = "" if farthest == 1 else ", largest along path"
+        yield f"load.live.by{along} = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
 
 
 def _ties(scene: Scene) -> Iterator[str]:

@@ -35,7 +35,10 @@ GAP_STEPS, FEWEST_ROWS = 5.0, 8
 """Time step, in median time steps, above which a record has a gap; fewest rows of a record checked for gaps."""
 
 LARGEST_VALUE = 1e6
-"""Largest admissible number in a record, times [s] included, in the file's unit: no ground motion is larger."""
+"""Largest admissible value, in the file's unit, and duration [s] of a record: no ground motion is larger."""
+
+LARGEST_TIME = 1e10
+"""Largest admissible time [s], also of clocks that count from 1970; rounded to floats, it is exact to 1e-6 s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +76,8 @@ def _line(path: Path, number: int) -> str:
     return f"{path.name}, line {number}"
 
 
-def _numbers(path: Path, number: int, words: Sequence[str]) -> list[float]:
-    """The words of a line as finite numbers."""
+def _numbers(path: Path, number: int, words: Sequence[str], most: float = LARGEST_VALUE) -> list[float]:
+    """The words of a line as finite numbers, whose magnitudes are at most `most`."""
     found = []
     for word in words:
         try:
@@ -82,8 +85,8 @@ def _numbers(path: Path, number: int, words: Sequence[str]) -> list[float]:
         except ValueError:
             what = "must be a number" if word else "has a gap where a number must be"
             raise SceneError(_line(path, number), what, word or None) from None
-        if not abs(value) <= LARGEST_VALUE:
-            raise SceneError(_line(path, number), f"must be a finite number, at most {LARGEST_VALUE:g}", word)
+        if not abs(value) <= most:
+            raise SceneError(_line(path, number), f"must be a finite number, at most {most:g}", word)
         found.append(value)
     return found
 
@@ -117,9 +120,12 @@ def _columns(path: Path, lines: Sequence[str]) -> Record:
             wanted = "two or three columns, time, horizontal and, maybe, vertical" if width not in (2, 3) else ""
             what = f"must have {wanted or f'{width} columns, as the first row'}"
             raise SceneError(_line(path, number), what, " ".join(words))
-        table.append(_numbers(path, number, words))
+        table.append(_numbers(path, number, words[:1], LARGEST_TIME) + _numbers(path, number, words[1:]))
         if len(table) > 1 and table[-1][0] <= table[-2][0]:
-            what = f"must be later than the row before, at {table[-2][0]:g} s"
+            what = f"must be later than the row before, at {table[-2][0]:.15g} s"
+            raise SceneError(_line(path, number), what, table[-1][0])
+        if table[-1][0] - table[0][0] > LARGEST_VALUE:
+            what = f"must be at most {LARGEST_VALUE:g} s later than the first row"
             raise SceneError(_line(path, number), what, table[-1][0])
     values = np.array(table)
     step = np.diff(values[:, 0])

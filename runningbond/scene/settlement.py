@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 LARGEST_ANGLE = 10.0
-"""Largest rotation of a support at λ = 1 [degrees]: up to it rotations count as small."""
+"""Largest rotation of a support, at λ = 1 and along a path [degrees]: up to it rotations count as small."""
+
+STATIONARY = 1e-3
+"""Displacement of a point up to which it counts as at rest, relative to the largest of the support's joint ends."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,9 @@ class Settlement(Action):
             if not self.rotation_angle:
                 raise SceneError("load.live.rotation_angle", "is missing; about is the point that it turns about")
         object.__setattr__(self, "path", turning_points("load.live.path", self.path))
+        if abs(angle) * self.farthest > LARGEST_ANGLE * (1 + 1e-9):
+            what = f"must turn the support by at most {LARGEST_ANGLE:g} degrees"
+            raise SceneError("load.live.rotation_angle", f"{what}; its path multiplies it by {self.farthest:g}", angle)
         if not any(self.by) and not self.rotation_angle:
             raise SceneError("load.live.by", "must move the support, or rotation_angle must turn it", list(self.by))
 
@@ -67,6 +73,11 @@ class Settlement(Action):
     def centre(self) -> Array:
         """Centre of rotation [m]."""
         return np.asarray(np.mean(self.box, axis=0) if self.about is None else self.about, dtype=float)
+
+    @property
+    def farthest(self) -> float:
+        """Largest multiple of the motion along the path, regardless of its sign."""
+        return max(map(abs, self.path))
 
     @classmethod
     def read(cls, table: Table) -> "Settlement":
@@ -121,14 +132,23 @@ class Settlement(Action):
             raise SceneError(f"{key}.box", "holds no ground that bears a block", [list(corner) for corner in self.box])
 
     def control(self, scene: "Scene") -> Any:
-        """First moving block, the middle of its top, and the direction in which this point moves."""
-        block = np.flatnonzero(self.moving(scene))[:1]
-        low, high = scene.blocks.extent(int(block[0]))
-        at = np.array([(low[0] + high[0]) / 2, high[1]])
-        dx, dy, turn = self.motion(scene)[block[0]]
-        x, y = at - scene.blocks.centroid[block[0]]
-        move = np.array([dx - turn * y, dy + turn * x])
-        return block, at, move / (np.hypot(*move) or 1.0)
+        """First moving block, the middle of its top, and the direction in which this point moves.
+
+        If the support turns about that point, the end of a joint on the support that moves farthest takes its place.
+        """
+        moving = self.moving(scene)
+        first = np.flatnonzero(moving)[0]
+        low, high = scene.blocks.extent(int(first))
+        joint, side = np.nonzero(moving[scene.joints.block])
+        block = np.append(first, np.repeat(scene.joints.block[joint, side], 2))
+        at = np.vstack([[(low[0] + high[0]) / 2, high[1]], scene.joints.ends[joint].reshape(-1, 2)])
+        x, y = (at - scene.blocks.centroid[block]).T
+        dx, dy, turn = self.motion(scene)[block].T
+        move = np.column_stack([dx - turn * y, dy + turn * x])
+        size = np.hypot(*move.T)
+        share = np.round(size / size.max(), 9)  # of ends that move equally far, rounding errors do not choose
+        k = 0 if share[0] > STATIONARY else int(share.argmax())
+        return block[[k]], at[k], move[k] / size[k]
 
     def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
         """An arrow at the moving ground."""

@@ -145,6 +145,10 @@ class Scene:
         """A copy with some fields of the default block material changed."""
         return replace(self, block_materials=(replace(self.block, **changes), *self.block_materials[1:]))
 
+    def with_rigid_blocks(self) -> "Scene":
+        """A copy in which no material of blocks has a Young's modulus, so that all blocks are rigid."""
+        return replace(self, block_materials=tuple(replace(each, young=None) for each in self.block_materials))
+
     def with_joint(self, **changes: Any) -> "Scene":
         """A copy with some fields of the default joint material changed."""
         return replace(self, joint_materials=(replace(self.joint, **changes), *self.joint_materials[1:]))
@@ -161,6 +165,10 @@ class Scene:
     def masonry(self) -> Mask:
         """Mask of the wall's blocks, without a beam on top, ``(nb,)``."""
         return self.wall & ~self.is_beam
+
+    def count_blocks(self, among: Mask) -> int:
+        """Number of the wall's blocks in a mask of blocks ``(nb,)``: parts of one block count once, a beam does not."""
+        return len(np.unique(self.part_of[among & self.masonry]))
 
     @property
     def drive(self) -> Drive | None:

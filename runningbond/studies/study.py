@@ -4,7 +4,8 @@ A study has parts. A part has cases, tuples of words and numbers, and a function
 measured values form a row of the study's table; tables, edges and charts are made only from rows.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -57,6 +58,15 @@ class Chart:
     draw: Callable[[Figure, Rows], None]
     name: str = ""  # file name without suffix; by default the name of the study
     size: tuple[float, float] = (8, 4.6)
+
+
+def run_around(own: float, values: Sequence[float], good: Container[float]) -> tuple[float, float]:
+    """First and last of successive good values around `own`, one of the values; NaN if that is not good itself."""
+    if own not in good:
+        return math.nan, math.nan
+    at = values.index(own)
+    bad = [-1, *(place for place, value in enumerate(values) if value not in good), len(values)]
+    return values[max(x for x in bad if x < at) + 1], values[min(x for x in bad if x > at) - 1]
 
 
 def all_rows(rows: Rows) -> list[Sheet]:

@@ -12,7 +12,7 @@ from runningbond.joints import wall_points
 from runningbond.results.reactions import Supports
 from runningbond.scene import BlockMaterial, JointMaterial, Lateral, Load, build_scene, scene_from_dict
 
-from ..pictures.scenes import SCENES, line, point, wall
+from ..pictures.scenes import MORTAR, SCENES, line, point, wall
 from ..walls import panel
 
 
@@ -123,6 +123,9 @@ def test_blocks_that_may_crack_are_counted_whole() -> None:
     told = dict(rows(scene_from_dict(SCENES["cracked"]())))
     assert told["blocks"] == "14 in 24 parts, of which 0 held"
     assert told["joints"].startswith("28, and 10 potential cracks")
+    tables = wall(2.0, 1.0, support={"kind": "fixed-first-course"}, inner_joint=MORTAR)
+    told = dict(rows(scene_from_dict(tables)))
+    assert (told["blocks"], told["supports"]) == ("18 in 32 parts, of which 4 held", "4 fixed blocks")
 
 
 @pytest.mark.parametrize("name", SCENES)

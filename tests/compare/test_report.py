@@ -31,7 +31,8 @@ from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.moments import MOMENTS, distances, with_moments
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.scene import Array, Scene
-from tests.walls import content, write_toml
+from runningbond.wall import Wall
+from tests.walls import content, panel, write_toml
 
 NAMES = ("limit", "dem-static", "dem-dynamic", "fem")
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -272,6 +273,19 @@ def test_multipliers_and_newtons_are_in_separate_tables(comparison: Comparison) 
     assert {(row["scene"], row["unit"]) for row in rows} == {
         (name, "N" if is_force(scene) else "1") for name, scene in scenes.items()
     }
+
+
+def test_tables_count_whole_blocks_without_the_beam() -> None:
+    """18 blocks of 0.24 × 0.12 m under a beam, 14 of them in halves; the table used to count 33 blocks."""
+    size = {"wall__length": 0.96, "wall__height": 0.48, "wall__block_height": 0.12}
+    crack = {"friction": 0.6, "cohesion": 1e5, "tensile_strength": 1e5}
+    scene = panel(**size, inner_joint=crack, beam={"height": 0.1})
+    comparison = Comparison({"own": scene}, [MODELS["limit"]], Campaign({}))
+    (sheet,) = cost_sheets(comparison)
+    assert sheet.rows[0][1] == "18"
+    (row,) = csv.DictReader(io.StringIO(csv_text(comparison)))
+    assert row["blocks"] == "18"
+    assert repr(Wall(content(**size, inner_joint=crack, beam={"height": 0.1}))).startswith("<Wall 'panel': 18 blocks")
 
 
 def test_outcomes_without_a_load_have_hollow_markers(comparison: Comparison) -> None:

@@ -438,3 +438,20 @@ def test_single_run_along_settlement_is_undecided() -> None:
     assert outcome.upper is not None
     assert outcome.upper >= whole.multiplier
     assert "the budget ran out in steps half as long" in outcome.message
+
+
+def test_step_without_verdict_in_second_run_is_not_put_down_to_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first step of the second run, half as long as that of the first, neither rests nor falls."""
+    hold, values = LoadPath.hold, list[float]()
+
+    def held(path: LoadPath, start: Array, plastic_slip: Array, control: Control) -> Rest:
+        values.append(control.value)
+        if control.value < values[0]:
+            return Rest("undecided", start, path.system.respond(start, plastic_slip), start, 10)
+        return hold(path, start, plastic_slip, control)
+
+    monkeypatch.setattr(LoadPath, "hold", held)
+    outcome = dem_static(wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -0.01))))
+    assert outcome.status == "undecided"
+    assert "m it neither rested nor fell in steps half as long" in outcome.message
+    assert "budget" not in outcome.message

@@ -626,6 +626,14 @@ def test_undecided_loads_above_last_rest_give_limit_analysis_bound(monkeypatch: 
     assert outcome.message.startswith("no answer: it neither rested nor fell")
 
 
+def test_bound_equal_to_last_rest_keeps_that_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A block without friction rests under no load only, which is also the bound of limit analysis."""
+    undecided_at(0.0, np.inf, monkeypatch)
+    outcome = dem_static(pile([rectangle(0, 0, 1, 1)], 0.0))
+    assert outcome.status == "collapse"
+    assert bracket(outcome) == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
 # --- the algorithm as published ------------------------------------------------------------------------------
 
 
@@ -663,3 +671,12 @@ def test_published_algorithm_is_linear_elastic_at_first() -> None:
     """It is a linear elastic analysis as long as no condition is violated."""
     curve = stiffness_update(pile([rectangle(0, 0, 0.5, 1)], 0.9, 1e10), 0.01, 0.4).curve
     assert curve[:, 0] / curve[-1, 0] == pytest.approx(curve[:, 1] / curve[-1, 1])
+
+
+@pytest.mark.parametrize(("kind", "statuses"), [("corners", {"converged"}), ("pinned-corners", {"singular"})])
+def test_published_algorithm_answers_for_block_without_joints(kind: str, statuses: set[str]) -> None:
+    """A block that its pins hold carries any load; a fourth pin, one more than it needs, makes the matrix singular."""
+    scene = courses([[1]], support__kind=kind, joint__normal_stiffness=1e10, joint__shear_stiffness=4e9)
+    found = stiffness_update(scene, 0.1, 0.5)
+    assert set(found.status) == statuses
+    assert not found.curve[:, 0].any()

@@ -368,6 +368,15 @@ def test_shear_box_slides_at_cohesion_and_friction(force: float, cohesion: float
     assert plateau * force == pytest.approx(cohesion + force * friction, rel=1e-3)
 
 
+@pytest.mark.parametrize(("steps", "points"), [(1, 1), (150, 150), (350, 200)])
+def test_drive_takes_all_steps_in_pieces_of_at_least_one(steps: int, points: int) -> None:
+    """A load that only moves one block: the push takes exactly as many steps as requested, at 1e-6 m/s."""
+    run = Run(rigid_system(block_on_base(1.0, 0.01, 0.4, stiffness=1e9)), local=0.5)
+    pushed = drive(run, State.at_rest(run.system), 1e-6 * steps * run.dt, steps)
+    assert len(pushed.curve) == points
+    assert pushed.state.time == pytest.approx(steps * run.dt)
+
+
 def test_drive_speed_is_halved_until_peak_converges() -> None:
     """A block pushed too fast shows inertia above μ; at lower speeds its peak converges to μ."""
     run = Run(rigid_system(block_on_base(1.0, 0.01, 0.4, stiffness=1e9)), local=0.5)

@@ -1,5 +1,6 @@
 """The model `fem`: stiff blocks against rigid blocks, published walls, and refusals."""
 
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -7,9 +8,9 @@ import pytest
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 
-from dem.dynamic import dem_dynamic
+from dem.dynamic import dem_dynamic, dem_vibration
 from fem_interface.modal_wall import modal_wall
-from fem_interface.model import fem
+from fem_interface.model import fem, fem_vibration
 from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
 from meshing import wall_mesh
@@ -178,6 +179,18 @@ def test_blocks_bonded_to_pinned_block_only_deform() -> None:
     assert np.abs(u[free] - exact).max() < 1e-6 * np.abs(exact).max()
     assert np.abs(u[~free]).max() < 1e-12 * np.abs(u).max()
     assert fem(scene, budget=2000).status == "unbounded"  # it checks whether joint forces can balance any load
+
+
+@pytest.mark.parametrize("kind", ["corners", "pinned-corners"])
+def test_rigid_block_held_by_its_pins_is_unbounded(kind: str) -> None:
+    """Its modes cannot move, and it has no joint: as for `dem-dynamic`, it is self-locking and does not vibrate."""
+    scene = courses([[1]], support__kind=kind, joint__mortar=MORTAR)
+    ours, theirs = fem(scene, modes=3), dem_dynamic(scene)
+    assert (ours.status, ours.message) == (theirs.status, theirs.message)
+    assert ours.status == "unbounded"
+    for vibrate in (partial(fem_vibration, modes=3), dem_vibration):
+        with pytest.raises(SceneError, match="closes no joint"):
+            vibrate(scene)
 
 
 @pytest.mark.parametrize(

@@ -288,6 +288,7 @@ def test_multiplier_depends_on_the_free_rectangle_only() -> None:
     [
         ({"wall__ends": "toothed"}, "full rectangular panel"),
         ({"joint__cohesion": 1e3}, "dry joints"),
+        ({"joint__compressive_strength": 4e4}, "joints that do not crush, without joint.compressive_strength"),
         ({"support__kind": "corners"}, "support.kind"),
         ({"load__live": {"kind": "point", "at": [0.72, 0.72], "force": [1, 0]}}, "lateral"),
     ],

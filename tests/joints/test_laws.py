@@ -21,7 +21,15 @@ from runningbond.dynamics.central_differences import step
 from runningbond.joints import KernelLaw, Law, PointLaw, PointResponse, joint_stiffness
 from runningbond.joints.compiled import kernel
 from runningbond.joints.coulomb import COULOMB
-from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE, Parameters
+from runningbond.joints.law import (
+    COMMON_ROWS,
+    CRUSHING,
+    DAMPED_WORK,
+    OPENING_BEFORE,
+    PLASTIC_CLOSURE,
+    SLIP_BEFORE,
+    Parameters,
+)
 from runningbond.joints.softening import SOFTENING
 from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, JointMaterial, Scene, SceneError, Stiffness
@@ -187,3 +195,15 @@ class Doubled(PointLaw):
 
     def __call__(self, opening: Array, slip: Array, plastic_slip: Array) -> PointResponse:
         return super().__call__(2 * opening, slip, plastic_slip)
+
+
+@pytest.mark.parametrize(("row", "crushed"), [((), [0.0, 0.0]), ((CRUSHING,), [0.0, 2e-4])])
+def test_overlap_counts_as_crushing_only_in_law_that_crushes(row: tuple[str, ...], crushed: list[float]) -> None:
+    """Two points close at an overlap of 0.1 and 0.2 mm; the second one has been crushed, if the law records it."""
+    law = replace(SPRINGS, history=(*COMMON_ROWS, PLASTIC_CLOSURE, *row))
+    points = KernelLaw(law, np.array([0, 2], dtype=np.uint64), np.array([[1e9, 4e8, np.inf]]))
+    history = np.zeros((points.rows, 2))
+    history[law.row(PLASTIC_CLOSURE)] = 1e-4, 2e-4
+    for name in row:
+        history[law.row(name)] = 0.0, 1e-5
+    assert points.crushed(history).tolist() == crushed

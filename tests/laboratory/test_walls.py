@@ -395,6 +395,22 @@ def test_curve_does_not_depend_on_the_spreadsheet_format(change: Callable[[str],
     assert curves[0][1] == pytest.approx([1.5e-3, 30.5e3])
 
 
+def test_comments_may_contain_quotes(tmp_path: Path) -> None:
+    """They need not be lines of a CSV file; inside a quoted entry, a line that begins with # is none."""
+    comment = '#note,"12 inch'
+    folder = write_folder(tmp_path, comment, GRANITE, comment)
+    (folder / f"{comment.split(',')[0]}.csv").unlink()
+    (wall,) = read_folder(folder)
+    assert (wall.name, wall.row.line) == ("WS.175", 3)
+    quoted = HEADS.replace("Joints", '"Joints\n# as built"')
+    (folder / "tests.csv").write_text(f"{comment}\n{quoted}\n{GRANITE}\n")
+    (wall,) = read_folder(folder)
+    assert wall.row.line == 4
+    (folder / "tests.csv").write_text(f'{comment}\n{quoted}\n"{GRANITE}\n')
+    with pytest.raises(SceneError, match=r"^tests.csv, line 4: is not a line of a CSV file"):
+        read_folder(folder)
+
+
 def test_table_does_not_depend_on_the_spreadsheet_format(tmp_path: Path) -> None:
     """Heads contain commas, which need no quotes if semicolons separate the columns."""
     heads, row = HEADS.replace('"', "").replace("Vmax,", "Vmax|"), f"{GRANITE[:-1]}R/TC"

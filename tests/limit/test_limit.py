@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import approx_fprime, linprog
 
 from runningbond.joints import joint_points
-from runningbond.limit import equilibrium, is_self_locking, limit, limit_nonassociated, limit_state
+from runningbond.limit import equilibrium, is_self_locking, limit, limit_nonassociated, limit_state, proved_bound
 from runningbond.limit.associated import STRENGTH_CAP
 from runningbond.limit.certificates import Certificate, certified_loads
 from runningbond.limit.force_program import ForceSolution
@@ -587,6 +587,18 @@ def _certificate(least: float, most: float) -> Certificate:
     none = np.zeros(0)
     ends = [ForceSolution("optimal", x, none, none, none, none, 0) for x in (least, most)]
     return Certificate(none, *ends)
+
+
+@pytest.mark.parametrize("width", [0.2, 0.5, 0.999, 1.0, 1.000000003, 1.000000006, 1.00000001])
+def test_proved_bound_is_rounded_up_to_nine_digits(width: float) -> None:
+    """A block of height 1 topples at its width, also if that is rounded down to nearest nine digits."""
+    scene = pile([rectangle(0, 0, width, 1.0)], 5.0)
+    bound, upper = proved_bound(scene), limit(scene).upper
+    assert upper == pytest.approx(width, rel=1e-12)
+    assert bound is not None
+    assert upper is not None
+    assert upper <= bound <= upper * (1 + 1.1e-8)
+    assert bound == float(f"{bound:.9g}")
 
 
 @pytest.mark.parametrize("size", [10.0, 100.0, 1000.0])

@@ -19,10 +19,12 @@ from runningbond.limit.force_program import frozen_friction, solve_forces
 from runningbond.limit.programs import Programs
 from runningbond.limit.search import search
 from runningbond.limit.search_log import SearchLog
+from runningbond.limit.starts import ROUND
 from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 from tests.checker import check
+from tests.walls import panel
 
 SIZE, CELLS = 2.0, 5
 
@@ -88,11 +90,11 @@ def test_rare_mechanisms_of_walls_with_openings_are_found(name: str, inset: floa
 @pytest.mark.long
 def test_true_friction_halves_load_of_panel_with_upright_blocks() -> None:
     """75 blocks, twelve wide and six high, H/L = 2, b/a = 1/4: 0.0717, against an associated bound of 0.1391."""
-    panel = rb.Wall.running_bond(
+    scene = rb.Wall.running_bond(
         length=1.44, height=2.88, block_width=0.12, block_height=0.48, thickness=0.12, density=1800.0, friction=0.6
     ).scene
-    outcome = limit_nonassociated(panel)
-    assert panel.wall.sum() == 75
+    outcome = limit_nonassociated(scene)
+    assert scene.wall.sum() == 75
     assert outcome.lower is not None
     assert outcome.lower <= 0.07175
     assert outcome.upper == pytest.approx(0.1391, abs=5e-5)
@@ -107,6 +109,17 @@ def test_search_ends_after_given_number_of_programs() -> None:
     assert short.lower is not None
     assert (short.steps or 0) < 0.5 * (usual.steps or 0)
     assert usual.lower <= short.lower
+
+
+@pytest.mark.parametrize(("most", "starts"), [(0, 1), (10_000, 33)])
+def test_search_without_certificate_makes_one_more_round(most: int, starts: int) -> None:
+    """After the limit of cost, or enough starts in vain, interior points decide on mechanisms in four more starts."""
+    live = {"kind": "point", "at": [0.12, 0.12], "force": [0, -1]}
+    size = {"wall__length": 0.48, "wall__height": 0.12, "wall__first_course": "half"}
+    system = equilibrium(panel(**size, support__kind="pinned-corners", load={"gravity": 9.81, "live": live}))
+    found = search(system, limit_state(system).forces, most=most)
+    assert not found.certificates
+    assert found.starts == starts + ROUND
 
 
 def test_search_ignores_mirroring_order_and_scale() -> None:
@@ -233,7 +246,7 @@ def test_warm_started_programs_reach_cold_optimum() -> None:
     for sense, aim in ((1.0, "smallest"), (-1.0, "largest"), (1.0, "smallest")):
         alone = solve_forces(system, driving, aim)  # type: ignore[arg-type]
         assert programs.extreme(driving, sense).multiplier == pytest.approx(alone.multiplier, rel=1e-9)
-        programs.corner(driving, np.ones(len(system.points)), pivots=20)
+        programs.vertex(driving, np.ones(len(system.points)), pivots=20)
 
 
 def test_interior_point_decides_if_simplex_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -250,7 +263,7 @@ def test_interior_point_decides_if_simplex_gives_up(monkeypatch: pytest.MonkeyPa
             assert hasty.frozen(pressure).multiplier == pytest.approx(program.multiplier, rel=1e-7)
             assert driving is not None
             for sense in (1.0, -1.0):
-                hasty.go_to((None, None, None))
+                hasty.start_from((None, None, None))
                 found, exact = hasty.extreme(driving, sense), patient.extreme(driving, sense)
                 assert found.status == exact.status
                 assert found.multiplier == pytest.approx(exact.multiplier, rel=1e-7, nan_ok=True)

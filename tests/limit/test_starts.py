@@ -30,7 +30,7 @@ def known(scene: Scene) -> Known:
 
 
 def numbers(origin: Origin) -> range:
-    """Numbers of the starts in the first round with an origin."""
+    """Numbers of the first starts with an origin; `ROUND` consecutive starts have the same one."""
     return range(ORIGINS.index(origin) * ROUND, (ORIGINS.index(origin) + 1) * ROUND)
 
 

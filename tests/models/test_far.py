@@ -5,9 +5,10 @@ from typing import Any
 
 import pytest
 
-from runningbond.models import MODELS
+from runningbond.models import MODELS, run_model
 from runningbond.models.far import going_far
 from runningbond.scene import SceneError
+from tests.walls import panel
 
 
 def test_going_far_passes_displacements_and_distance() -> None:
@@ -42,3 +43,10 @@ def test_unsupported_displacements_are_refused(
     with pytest.raises(SceneError) as refused:
         going_far(MODELS[name], displacements, distance)
     assert str(refused.value).startswith(said)
+
+
+@pytest.mark.parametrize("name", ["dem-dynamic", "fem"])
+def test_settings_are_checked_at_finite_displacements_too(name: str) -> None:
+    far = going_far(MODELS[name], "finite", None)
+    with pytest.raises(SceneError, match=f"model {name}: collapse = -1.0: must be a number above 0"):
+        run_model(far, panel(block__young=1e10), collapse=-1.0)

@@ -55,6 +55,24 @@ def test_load_step_settings_are_refused_for_ground_motion(model: str, setting: s
         run_model(model, scene, **given)
 
 
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize(
+    ("setting", "value", "said"),
+    [
+        ("displacements", "nonsense", "must be one of"),
+        ("displacements", "finite", "is not supported where the ground moves"),
+        ("distance", -3.0, "must be a number above 0"),
+        ("distance", 3.0, "goes with finite displacements"),
+    ],
+)
+def test_displacements_and_distance_are_checked_for_ground_motion(
+    model: Any, setting: str, value: Any, said: str
+) -> None:
+    scene = panel(block__young=1e10, load__live=None, load__history=PULSE)
+    with pytest.raises(SceneError, match=f"{setting} = .*: {said}"):
+        model(scene, **{setting: value})
+
+
 @pytest.mark.parametrize(
     ("settings", "said"),
     [

@@ -122,3 +122,16 @@ def test_soft_joints_are_not_reported_at_finite_displacements() -> None:
     assert "too soft" in run_model("dem-dynamic", scene, 0.05).message
     assert "too soft" not in run_model("dem-dynamic", scene, 0.05, **far).message
     assert "too soft" not in run_model(going_far(find_model("dem-dynamic"), **far), scene, 0.05).message
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_modulus_of_named_material_does_not_soften_rigid_blocks(model: str) -> None:
+    """Outcome and message of rigid blocks are the same with and without a modulus, apart from the note on its key."""
+    joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 1e10}
+    named: dict[str, Any] = {"materials": {"soft": {"density": 1800.0, "young": 1e4}}}
+    named |= {"assign": [{"block": "soft", "box": [[-1.0, -1.0], [9.0, 9.0]]}]}
+    size: dict[str, Any] = {"wall__length": 0.48, "wall__height": 0.24}
+    rigid, soft = (run_model(model, panel(**size, joint=joint, **given), 0.05) for given in ({}, named))
+    assert soft.status == "collapse"
+    assert (soft.lower, soft.upper) == (rigid.lower, rigid.upper)
+    assert soft.message == f"{rigid.message}; not taken into account: materials.soft.young"

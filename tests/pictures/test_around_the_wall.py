@@ -197,6 +197,16 @@ def test_each_load_is_drawn_with_its_size(name: str, said: list[str], counts: di
         assert found["dead load"] == counts.get("dead load", 0)
 
 
+def test_point_forces_are_multiples_of_their_resultant() -> None:
+    """With a resultant of 1 N, λ is the resultant P in newtons; each force used to be labelled P, whatever its size."""
+    pushes = [point(0.5, 1.0, 0, -3), point(1.5, 1.0, 0, 2)]
+    tables = wall(2.0, 1.0, load={"gravity": 9.81, "live": pushes})
+    assert sorted(labels(figure_of(scene_from_dict(tables)))) == ["2 P", "3 P"]
+    beam = {"height": 0.3, "condition": "fixed-height", "drive": {"force": [3, 0]}}
+    tables = wall(2.0, 1.0, beam=beam, load={"gravity": 9.81, "live": [point(2.0, 0.9, -2, 0)]})
+    assert sorted(labels(figure_of(scene_from_dict(tables)))) == ["2 P", "3 P"]
+
+
 def test_each_of_many_loads_has_one_label(drawn: Any) -> None:
     """Ten loads and a gravity vector: loads on the mass in the same direction share their arrows and a label."""
     _, figure = drawn("many_loads")

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
-from runningbond.pictures.charts import bracket
+from runningbond.pictures.charts import LOOKS, bracket, looks_of
 from runningbond.pictures.curve import curve_figure
 from runningbond.pictures.deformed_shape import undeformed_shape
 from runningbond.pictures.plate import PlateRow, plate_figure
@@ -59,6 +59,15 @@ def test_bracket_without_collapse_is_hollow(status: str, inside: str) -> None:
     last = axes.lines[-1]
     assert same_color(last.get_color(), inside)
     assert axes.lines[0].get_linewidth() == (4 if status == "collapse" else 2 * last.get_linewidth())
+
+
+def test_looks_of_many_names_differ() -> None:
+    """The sixth and later names used to be left out."""
+    names = [f"wall {k}" for k in range(25)]
+    looks = looks_of(names)
+    assert list(looks) == names
+    assert len(set(looks.values())) == 25
+    assert looks_of(names[:5]) == dict(zip(names, LOOKS, strict=False))
 
 
 def test_texts_of_plate_do_not_overlap() -> None:

@@ -57,6 +57,22 @@ def test_wall_is_drawn_block_by_block() -> None:
     assert "tan φ = 0.6" in texts(figure)
 
 
+def test_caption_counts_whole_blocks_and_cracks_apart_from_joints() -> None:
+    """Blocks of 0.24 × 0.12 m that may crack: the caption used to say 45 joints."""
+    size = {"wall__length": 0.96, "wall__height": 0.48, "wall__block_height": 0.12}
+    figure = figure_of(panel(**size, support__kind="fixed-first-course", inner_joint=CRACK))
+    assert "18 blocks, 35 joints, 10 potential cracks" in texts(figure)
+
+
+def test_numbered_mechanism_has_room_for_thrust() -> None:
+    """Forces are drawn beyond the base of a stack; with block numbers, they used to be cut off there."""
+    scene = courses([[1], [1], [1]], height=0.4)
+    axes = figure_of(scene, limit(scene), numbers=True).axes[0]
+    thrust = np.concatenate([line.get_xydata() for line in axes.lines if line.get_label() == "thrust"])
+    assert thrust[:, 1].min() < -0.15
+    assert axes.get_ylim()[0] < thrust[:, 1].min()
+
+
 def test_joints_are_drawn_by_material() -> None:
     """Mortar joints and potential cracks in two colours, each joint once, along its own line."""
     scene = panel(inner_joint=CRACK)

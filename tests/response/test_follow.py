@@ -170,6 +170,17 @@ def test_points_must_lie_above_the_ground_of_the_wall() -> None:
     assert follow(rest, 1.0, points=np.array([[0.2, 5.1]]), rows=50).verdict == "stands"
 
 
+def test_points_on_a_fixed_course_are_refused() -> None:
+    """They were once attached to a block above, whose motion they reported."""
+    joint = {"friction": 2.0, "normal_stiffness": 1e9, "shear_stiffness": 1e9}
+    size = {"wall__length": 0.24, "wall__height": 0.12, "support__kind": "fixed-first-course"}
+    history = {"pulse": {"kind": "half-sine", "amplitude": 0.1, "period": 0.01}, "quantity": "acceleration"}
+    rest = resting(panel(**size, joint=joint, load__live=None, load__history=history))
+    with pytest.raises(SceneError, match=r"points\[1\] = \[0.12, 0.03\]: must lie on a block that can move"):
+        follow(rest, 1.0, points=np.array([[0.12, 0.06], [0.12, 0.03]]))
+    assert len(follow(rest, 1.0, points=np.array([[0.12, 0.06]]), rows=50).points) == 1
+
+
 @pytest.mark.parametrize("falls_first", [True, False])
 def test_ledger_lost_after_a_fall_does_not_change_the_verdict(
     falls_first: bool, monkeypatch: pytest.MonkeyPatch

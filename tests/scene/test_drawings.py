@@ -496,6 +496,30 @@ def test_polygons_of_round_blocks_keep_their_area(kind: str, tmp_path: Path) -> 
     assert _areas([block])[0] == pytest.approx(math.pi * 1e-2, rel=3e-3)
 
 
+@pytest.mark.parametrize("kind", ["circle", "ellipse"])
+def test_drawing_mostly_of_full_circles_is_read(kind: str, tmp_path: Path) -> None:
+    """The ends of a full circle coincide up to rounding: curves count with their size, not with their ends."""
+
+    def draw(_: Any, space: Any) -> None:
+        for k in range(8):
+            if kind == "circle":
+                space.add_circle((2000 * k + 100, 0), 300)
+            else:
+                space.add_ellipse((2000 * k + 100, 0), (300, 0), 0.5)
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", draw), "mm")
+    exact = math.pi * 0.09 * (1.0 if kind == "circle" else 0.5)
+    assert _areas(drawing.blocks) == pytest.approx([exact] * 8, rel=3e-3)
+
+
+def test_drawing_of_one_circle_is_refused(tmp_path: Path) -> None:
+    def draw(_: Any, space: Any) -> None:
+        space.add_circle((5, 5), 0.3)
+
+    with pytest.raises(SceneError, match="holds 1 closed outline; it needs the ground and at least one block"):
+        read_drawing(dxf(tmp_path / "wall.dxf", draw, ground=False), "mm")
+
+
 def test_arc_across_angle_zero_and_its_mirror_image(tmp_path: Path) -> None:
     """The right half of a disc; with its extrusion away from the viewer, mirrored, the left half."""
 

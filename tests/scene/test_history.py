@@ -1,5 +1,6 @@
 """Ground motions: values of records and pulses, and messages about invalid ones."""
 
+import math
 import os
 from pathlib import Path
 from typing import Any
@@ -131,6 +132,36 @@ def test_time_of_a_record_starts_at_its_first_sample() -> None:
     assert (late.duration, late.resolution) == pytest.approx((0.6, 0.05))
 
 
+def test_record_may_have_absolute_times(tmp_path: Path) -> None:
+    """Seconds since 1970, rounded to 2e-7 s, give the motion of the same record from 0 s."""
+    motions = []
+    for start in (0, 1_600_000_000):
+        rows = (f"{start + k // 200}.{k % 200 * 5:03d}, {k % 7 - 3}" for k in range(400))
+        (tmp_path / "record.csv").write_text("\n".join(rows))
+        motions.append(of({"file": "record.csv", "quantity": "acceleration"}, tmp_path))
+    first, late = motions
+    assert late.duration == pytest.approx(first.duration, abs=1e-6)
+    assert late.resolution == pytest.approx(0.0025, rel=1e-3)
+    assert late.velocity(late.time) == pytest.approx(first.velocity(first.time), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("time", "values"),
+    [
+        ([0, 1], [1, 2, 3]),
+        ([0, 1], [[1, 2], [3]]),
+        ([0, 1], [1, 2]),
+        ([[0, 1]], [[1, 0], [2, 0]]),
+        (1.0, [1, 0]),
+        ([0, "now"], [[1, 0], [2, 0]]),
+        ([0, math.inf], [[1, 0], [2, 0]]),
+    ],
+)
+def test_times_and_values_that_do_not_match_are_refused(time: Any, values: Any) -> None:
+    with pytest.raises(SceneError, match=r"^load\.history: must have"):
+        History(time, values)
+
+
 @pytest.mark.parametrize("multiplier", [1.5, -1.5])
 def test_peak_acceleration_is_the_largest_vector_norm(multiplier: float) -> None:
     """3 m/s² sideways and 4 m/s² down are 5 m/s² in total; the same with the sign reversed (λ < 0)."""
@@ -248,6 +279,12 @@ REFUSED: list[tuple[Any, str]] = [
     (record("0, 1\n0.1, nan\n0.2, 0\n"), "record.csv, line 2 = 'nan': must be a finite number"),
     (record("0, 1\n0.1, inf\n"), "record.csv, line 2 = 'inf': must be a finite number"),
     (record("0, 1\n0.1, 1e9\n"), "record.csv, line 2 = '1e9': must be a finite number, at most 1e+06"),
+    (record("0, 1\n1e11, 1\n"), "record.csv, line 2 = '1e11': must be a finite number, at most 1e+10"),
+    (record("1, 1\n2e6, 1\n"), "record.csv, line 2 = 2000000.0: must be at most 1e+06 s later than the first row"),
+    (
+        record("1600000000.02, 1\n1600000000.01, 1\n"),
+        "later than the row before, at 1600000000.02 s",
+    ),
     (record("0, 1\n0.1,\n0.2, 1\n"), "record.csv, line 2: has a gap where a number must be"),
     (record("0, 1, 2\n0.1,,1\n"), "record.csv, line 2: has a gap where a number must be"),
     (record("0, 1\n0.1, high\n"), "record.csv, line 2 = 'high': must be a number"),

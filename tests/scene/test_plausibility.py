@@ -50,8 +50,9 @@ def beam(height: float, moves: float | None = None) -> dict[str, Any]:
     return {"beam": {"height": height, "force": [0.0, -1e3], **drive}} | ({"load__live": None} if drive else {})
 
 
-def settles(by: float) -> dict[str, Any]:
-    return {"load__live": {"kind": "settlement", "box": [[0.0, -1.0], [0.72, 0.1]], "by": [0.0, -by]}}
+def settles(by: float, path: list[float] | None = None) -> dict[str, Any]:
+    live = {"kind": "settlement", "box": [[0.0, -1.0], [0.72, 0.1]], "by": [0.0, -by]}
+    return {"load__live": live if path is None else live | {"path": path}}
 
 
 def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
@@ -92,6 +93,11 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (beam(250.0), "beam.height = 250: is more than the wall's size, 1.44 m; are mm meant?", beam(0.25)),
         (beam(0.2, 10.0), "beam.drive.displacement = 10: is more than", beam(0.2, 0.01)),
         (settles(2.0), "load.live.by = 2: moves a support by more than a tenth", settles(0.02)),
+        (
+            settles(0.01, [1.0, -100.0, 0.0]),
+            "load.live.by, largest along path = 1: moves a support by more than a tenth",
+            settles(1.0, [0.01, -0.02]),
+        ),
     ],
 )
 def test_values_in_a_wrong_unit_are_warned_about(odd: dict[str, Any], says: str, near: Any) -> None:

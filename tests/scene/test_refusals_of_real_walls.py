@@ -105,6 +105,8 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live(SINK | {"box": [[5, 5], [6, 6]]}), "load.live.box = [[5.0, 5.0], [6.0, 6.0]]: holds no ground"),
         (live(SINK | {"box": [[0, 5], [0.7, 6]]}), "load.live.box = [[0.0, 5.0], [0.7, 6.0]]: holds no ground"),
         (live(SINK | {"rotation_angle": 30}), "load.live[0].rotation_angle = 30.0: must be a number at least -10"),
+        (live(SINK | {"rotation_angle": 10, "path": [1, -5, 0]}), "at most 10 degrees; its path multiplies it by 5"),
+        (live(SINK | {"rotation_angle": 6, "amplitudes": [1, 2]}), "load.live[0].rotation_angle = 6.0: must turn the"),
         (live(SINK | {"about": [1, 1]}), "load.live[0].rotation_angle: is missing; about is the point"),
         (live(SINK | {"about": [1]}), "load.live[0].about = [1]: must be a pair"),
         (live(SINK | {"path": []}), "load.live[0].path = []: must be a list of finite numbers that are not all zero"),

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from runningbond.limit.settlement import largest_displacement
 from runningbond.models import run_model
 from runningbond.results.mechanism import carried
 from runningbond.scene import Scene, SceneError, scene_from_dict
@@ -143,6 +144,30 @@ def test_ground_turns_about_its_point_as_a_rigid_body(about: tuple[float, float]
     low, high = scene.blocks.extent(int(moving[0]))
     assert (block.tolist(), at.tolist()) == (moving.tolist(), pytest.approx([(low[0] + high[0]) / 2, high[1]]))
     assert direction * np.hypot(*motion(at)) == pytest.approx(motion(at), rel=1e-12)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-17, 1e-9])
+@pytest.mark.parametrize("angle", [1.0, -1.0])
+def test_control_point_is_where_ground_that_turns_about_its_top_moves_most(angle: float, off: float) -> None:
+    """The middle of the top stays, or moves by rounding errors only; the control point is an end of a joint."""
+    live = {"kind": "settlement", "box": [[0.0, -0.1], [0.4, 0.1]], "rotation_angle": angle, "about": [0.2 + off, 0.0]}
+    scene = panel(load__live=live)
+    (block,), at, direction = scene.control_point
+    assert scene.support_motion[block].any()
+    assert at == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert direction == pytest.approx([0.0, -angle], abs=1e-12)
+    move = carried(scene.blocks, np.array([block]), at[None], scene.support_motion)[0]
+    assert move @ direction == pytest.approx(largest_displacement(scene), rel=1e-6)
+    (arrow,) = scene.load.live[0].arrows(scene)
+    assert np.hypot(*arrow.direction) == pytest.approx(1.0)
+
+
+def test_support_turns_by_ten_degrees_at_most_along_its_path() -> None:
+    """Exactly ten degrees are accepted although 3 · 10/3 is rounded."""
+    live = {"kind": "settlement", "box": [[0.8, -3.0], [4.0, 0.5]], "rotation_angle": 10 / 3}
+    assert panel(load__live=live | {"path": [1.0, -3.0]}).settlement.farthest == 3.0  # type: ignore[union-attr]
+    with pytest.raises(SceneError, match=r"rotation_angle = 3\.3\d*: must turn the support by at most 10 degrees"):
+        panel(load__live=live | {"path": [1.0, -3.01]})
 
 
 def test_ground_is_cut_into_moving_and_fixed_parts(tmp_path: Any) -> None:

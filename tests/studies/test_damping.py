@@ -4,7 +4,16 @@ import pytest
 
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.studies import Row
-from runningbond.studies.stability.damping import judged, least_local, most_local, most_mass_rate
+from runningbond.studies.stability.damping import (
+    LOCALS,
+    MAPS,
+    VISCOSITIES,
+    fits,
+    judged,
+    least_local,
+    most_local,
+    most_mass_rate,
+)
 from runningbond.studies.walls import SLIDING, TOPPLING, W1
 
 
@@ -57,3 +66,11 @@ def test_undamped_wall_is_undecided(load: float) -> None:
 def test_viscous_damping_removes_chatter_that_local_damping_leaves(viscous: float, verdict: str) -> None:
     """Without viscous damping a wall 2 % above its load creeps; it is not taken to be at rest."""
     assert judged(W1, 1.02, 0.8, viscous, budget=150_000)["verdict"] == verdict
+
+
+def test_range_of_damping_ends_at_the_first_wrong_verdict() -> None:
+    """Around the suite's α and ξ: one wrong verdict at α = 0.2 used to leave the range from 0 on."""
+    wrong = {(0.2, VISCOUS), (LOCAL, 3.0)}
+    verdicts = [(a, x, "wrong" if (a, x) in wrong else "right") for a in LOCALS for x in VISCOSITIES]
+    edges = fits({MAPS: [{"α": a, "ξ": x, "verdict": verdict} for a, x, verdict in verdicts]})
+    assert [edge.measured for edge in edges] == [0.35, 0.95, 0.0, 1.0, 2]

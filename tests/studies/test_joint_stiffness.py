@@ -11,7 +11,21 @@ from runningbond.compare import published_scene
 from runningbond.joints import stiffness_note
 from runningbond.joints.stiffness import EPSILON, SOFT, STIFF
 from runningbond.models import run_model
-from runningbond.studies.stability.joint_stiffness import OVERLAP, at_rest, condition, overlap, wall
+from runningbond.studies.stability.joint_stiffness import (
+    CASES,
+    COLLAPSES,
+    CONDITION,
+    K_N,
+    NORMAL,
+    OVERLAP,
+    REST,
+    THEORY,
+    at_rest,
+    condition,
+    fits,
+    overlap,
+    wall,
+)
 from runningbond.studies.stability.joint_stiffness import stiffness_note as said_in
 from tests.at_length import at_length
 
@@ -85,3 +99,18 @@ def test_rounding_in_too_stiff_joints_is_reported() -> None:
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 def test_published_walls_get_no_stiffness_note(name: str, model: str) -> None:
     assert not said_in(run_model(model, published_scene(name), 0.05).message)
+
+
+def test_range_of_stiffness_ends_at_the_first_note() -> None:
+    """Around the stiffness of the wall's own joints: a note at 1e9 Pa/m used to leave the range from 1e5 Pa/m on."""
+    rest = [{K_N: normal, OVERLAP: 1e-5, THEORY: 1e-5, CONDITION: 1.0} for normal in NORMAL]
+    cases: list[dict[str, Any]] = [{K_N: normal, "model": model} for normal, model in CASES]
+    rows = [case | {"status": "collapse", "λ": EXACT, "of the stiffness": ""} for case in cases]
+    for row in rows:
+        if row[K_N] == 1e9:
+            row["of the stiffness"] = "joints are too soft"
+        if row[K_N] == 1e14:
+            row["status"] = "undecided"
+    edges = {edge.what: edge.measured for edge in fits({REST: rest, COLLAPSES: rows})}
+    ends = [edges[f"{end} k_n at which all models collapse and say nothing [Pa/m]"] for end in ("smallest", "largest")]
+    assert ends == [1e10, 1e13]

@@ -16,7 +16,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
 from ..table import bracket
-from .costs import Estimate, short_search
+from .costs import Estimate, short_search, tolerance_of_draws
 from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step
@@ -124,8 +124,7 @@ class Advice:
         wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
         wanted["programs"] = short_search(known.scene)
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
-        # With several draws half the tolerance for each, so that draws that agree lie within the tolerance together.
-        tolerance, found = known.tolerance / min(step.draws, 2), list[Outcome]()
+        tolerance, found = tolerance_of_draws(known.tolerance, step.draws), list[Outcome]()
         for k in range(step.draws):
             found.append(run_model(model, Scatter().draw(known.scene, k), tolerance, **settings))
             if "interrupted" in found[-1].message:
@@ -134,14 +133,20 @@ class Advice:
 
 
 def together(draws: Sequence[Outcome]) -> Outcome:
-    """Combine draws: the outcome with the lowest load, the bracket around all collapses, and their median as λ."""
-    fallen = [draw for draw in draws if draw.lower is not None and draw.multiplier is not None]
-    if len(draws) == 1 or not fallen:
+    """Combine draws: the lowest collapse or else the first draw, the bracket around all collapses, their median as λ.
+
+    The seconds are those of all draws.
+    """
+    if len(draws) == 1:
         return draws[0]
+    seconds = sum(draw.seconds for draw in draws)
+    fallen = [draw for draw in draws if draw.lower is not None and draw.multiplier is not None]
+    if not fallen:
+        return replace(draws[0], seconds=seconds)
     lowest = min(fallen, key=lambda draw: draw.lower or 0.0)
     upper = max(draw.upper or 0.0 for draw in fallen)
     median = float(np.median([draw.multiplier for draw in fallen if draw.multiplier is not None]))
-    return replace(lowest, upper=upper, multiplier=median, seconds=sum(draw.seconds for draw in draws))
+    return replace(lowest, upper=upper, multiplier=median, seconds=seconds)
 
 
 def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
@@ -165,6 +170,6 @@ def finite_peak(known: Knowledge, step: Step) -> Outcome:
     reach: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam moves as its drive prescribes
     outcome = run_model(model, scene, tolerance, displacements="finite", **reach)
     if outcome.status == "collapse" and bound is not None and outcome.lower is not None and outcome.lower > bound:
-        message = f"above the load that no wall bears at small displacements: {outcome.message}"
+        message = f"above the load that no wall carries at small displacements: {outcome.message}"
         outcome = replace(outcome, status="undecided", multiplier=None, message=message)
     return replace(outcome, model=step.name or "")

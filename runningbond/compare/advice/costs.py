@@ -59,15 +59,24 @@ def short_search(scene: Scene) -> int:
     return 20 + POINT_PROGRAMS // (2 * max(1, len(scene.joints)))
 
 
+def tolerance_of_draws(tolerance: float, draws: int) -> float:
+    """Tolerance of each draw: with several draws half, so that draws that agree lie within the tolerance together."""
+    return tolerance / min(draws, 2)
+
+
 def estimate(
     model: Model, scene: Scene, tolerance: float, pace: Pace = FITTED_PACE, *, advised: bool = False, draws: int = 1
 ) -> Estimate:
-    """Estimate the time of a model that has a `Cost` for some draws of a scene, run by itself or as in `advise`."""
+    """Estimate the time of a model that has a `Cost` for some draws of a scene, run by itself or as in `advise`.
+
+    The draws are run to `tolerance_of_draws`.
+    """
     law = SHORT_SEARCH if advised and model.kind == "certificate" else model.cost
     if law is None:
         raise ValueError(f"there is no cost law for {model.name}")
     blocks = int((scene.wall & ~scene.fixed).sum())
-    seconds = law.at_100 * (blocks / 100) ** law.growth * (FITTED_TOLERANCE / tolerance) ** law.finer
+    seconds = law.at_100 * (blocks / 100) ** law.growth
+    seconds *= (FITTED_TOLERANCE / tolerance_of_draws(tolerance, draws)) ** law.finer
     if not any(scene.load.gravity):
         seconds *= law.weightless
     if scene.inner_joint is not None:
@@ -88,14 +97,21 @@ def _dearer(model: Model, law: Cost, scene: Scene) -> float:
     return dearest * (law.soft if asks_others(scene, {}) else 1.0)
 
 
-def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> Pace:
-    """Pace from the outcomes so far; `FITTED_PACE` if none of them has a cost law and a measured time."""
-    runs = [(MODELS[each.model], each.seconds) for each in outcomes if each.model in MODELS and each.seconds > 0]
-    timed = [(model, seconds) for model, seconds in runs if model.cost is not None and model.kind != "estimate"]
+def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome], draws: Sequence[int] = ()) -> Pace:
+    """Pace from the outcomes so far; `FITTED_PACE` if none of them has a cost law and a measured time.
+
+    `draws` is the number of draws in the seconds of each outcome, by default one.
+    """
+    runs = [
+        (MODELS[each.model], number, each.seconds)
+        for each, number in zip(outcomes, draws or [1] * len(outcomes), strict=True)
+        if each.model in MODELS and each.seconds > 0
+    ]
+    timed = [run for run in runs if run[0].cost is not None and run[0].kind != "estimate"]
     if not timed:
         return FITTED_PACE
-    laws = [estimate(model, scene, tolerance, advised=True) for model, _ in timed]
+    laws = [estimate(model, scene, tolerance, advised=True, draws=number) for model, number, _ in timed]
     weights = [max(log(law.spread), LEAST_SCATTER) ** -2 for law in laws]
-    slower = [log(seconds / law.seconds) for law, (_, seconds) in zip(laws, timed, strict=True)]
+    slower = [log(seconds / law.seconds) for law, (*_, seconds) in zip(laws, timed, strict=True)]
     mean = sum(weight * each for weight, each in zip(weights, slower, strict=True)) / sum(weights)
     return Pace(exp(mean), exp(sum(weights) ** -0.5))

@@ -28,7 +28,8 @@ def _refuse(scene: Scene) -> None:
     """Refuse loads for which the bounds and certificates of the ladder do not hold, or hold with opposite sense."""
     if scene.settlement:
         remedy = (
-            "is not advised on: λ is the share that the support bears; take runningbond run, limit-nonassociated first"
+            "is not advised on: λ is the share that the support carries; "
+            "take runningbond run, limit-nonassociated first"
         )
         raise SceneError("load.live settlement", remedy)
     if scene.history is not None:
@@ -51,6 +52,7 @@ class Knowledge:
     tolerance: float  # requested relative width of the bracket
     finite: bool = False  # whether finite displacements are requested, even if displacements are small
     outcomes: list[Outcome] = field(default_factory=list)
+    drawn: list[int] = field(default_factory=list)  # number of draws in each of the outcomes
     bound: float | None = None  # associated limit load: an upper bound at small displacements
     evidence: Evidence = ""  # kind of evidence for the answer
     answer: Outcome | None = None  # outcome with the bracket of the answer
@@ -73,6 +75,7 @@ class Knowledge:
     def learn(self, model: Model, outcome: Outcome, *, finite: bool = False, draws: Sequence[Outcome] = ()) -> None:
         """Add the outcome of a model, at `finite` or small displacements, or the combined outcome of its `draws`."""
         self.outcomes.append(outcome)
+        self.drawn.append(max(1, len(draws)))
         if outcome.status == "unbounded" and model.kind == "history" and self.answer and self.evidence == "certificate":
             # Collapse is certified for some joint forces, but the load alone did not lead to such forces.
             self.answer = replace(self.answer, status="undecided", multiplier=None, upper=None)
@@ -164,14 +167,14 @@ class Knowledge:
 
     def estimate(self, model: Model, draws: int = 1) -> Estimate:
         """Expected cost of a model for some draws, at the pace of the models run so far."""
-        at = pace(self.scene, self.tolerance, self.outcomes)
+        at = pace(self.scene, self.tolerance, self.outcomes, self.drawn)
         return estimate(model, self.scene, self.tolerance, at, advised=True, draws=draws)
 
     def meaning(self) -> str:
         """Meaning of the bracket of the answer, in words; empty if there is no answer."""
         if self.answer is None:
             return ""
-        return self._meaning(self.answer) + ("; blocks crack on their axes alone" if self.halves else "")
+        return self._meaning(self.answer) + ("; blocks crack only on their axes" if self.halves else "")
 
     def _meaning(self, answer: Outcome) -> str:
         """Meaning of the bracket of an answer, in words."""

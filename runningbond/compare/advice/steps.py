@@ -68,7 +68,7 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
         return Step(softening[0], f"{bound}; {reason}")
     if known.evidence == "proof":
         nothing = "nothing slides with friction on a closed joint, so dilatancy has no influence"
-        return _enough(known, "it bears none of the live load" if known.bound == 0.0 else nothing)
+        return _enough(known, "it carries none of the live load" if known.bound == 0.0 else nothing)
     model, why = _history(known)
     if known.crushes:
         return Step(model, f"{bound}; joints crush, which certificates do not include: {why}")
@@ -133,7 +133,7 @@ def _enough(known: Knowledge, why: str) -> Step:
     far = (model for model in known.histories if "displacements" in model.parameters)
     finite = next(model for model in far if deforms(model) == known.soft)
     if known.finite:
-        return Step(finite, f"{why}; finite displacements are asked for", finite=True)
+        return Step(finite, f"{why}; finite displacements are requested", finite=True)
     moved = known.displacement
     if moved is None:
         return Step(None, f"{why}; displacements are taken to be small")

@@ -73,6 +73,11 @@ class Arc:
         """First and last point, ``(2, 2)``."""
         return self.at([self.start, self.start + self.sweep])
 
+    @property
+    def samples(self) -> Array:
+        """Five points from the first to the last, at equal steps of t, ``(5, 2)``."""
+        return self.at(self.start + self.sweep * np.linspace(0, 1, 5))
+
     def parameters(self, points: Array) -> tuple[Array, Array]:
         """Parameters of points ``(n, 2)`` in [0, 2π), and distances from the full curve (upper bounds for ellipses)."""
         x, y = np.linalg.solve(self.axes.T, (points - self.centre).T)
@@ -118,7 +123,7 @@ class Chords:
     def _curve_under(self, arc: Arc) -> tuple[Arc, Array, Array] | None:
         """The curve that an arc is a part of, with the parameters and positions of its corners."""
         n = len(self._curves)
-        apart = (arc.at(arc.start + arc.sweep * np.linspace(0, 1, 5)) - self._centre[:n]) @ self._inverse[:n]
+        apart = (arc.samples - self._centre[:n]) @ self._inverse[:n]
         off = np.abs(np.hypot(*np.moveaxis(apart, 2, 0)) - self._scale[:n]).max(axis=1, initial=0.0)
         on = np.flatnonzero(off <= 1)
         return self._curves[on[0]] if len(on) else None

@@ -153,14 +153,15 @@ def _together(drawing: Drawing, expand: float | None, heal: float | None) -> Dra
 
 def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:
     """Closed outlines of a model space, their layers and names, and notes."""
-    ends = [piece.ends if isinstance(piece, Arc) else piece for curve in space.drawn for piece in curve.pieces]
-    corners = np.vstack([np.zeros((0, 2)), *ends])
+    pieces = [piece for curve in space.drawn for piece in curve.pieces]
+    corners = np.vstack([np.zeros((0, 2)), *(piece.ends if isinstance(piece, Arc) else piece for piece in pieces)])
     tolerance = 0.0
     if len(corners):
-        strokes = np.array([np.ptp(points, axis=0).max() for points in ends])
+        along = [piece.samples if isinstance(piece, Arc) else piece for piece in pieces]  # ends of circles coincide
+        strokes = np.array([np.ptp(points, axis=0).max() for points in along])
         stroke = float(np.median(strokes[strokes > 0])) if strokes.any() else np.inf
-        tolerance = min(ROUNDING * float(np.ptp(corners, axis=0).max()), MAX_ROUNDING * stroke)
-    arcs = [piece for curve in space.drawn for piece in curve.pieces if isinstance(piece, Arc)]
+        tolerance = min(ROUNDING * float(np.ptp(np.vstack(along), axis=0).max()), MAX_ROUNDING * stroke)
+    arcs = [piece for piece in pieces if isinstance(piece, Arc)]
     chords = Chords(arcs, corners, tolerance)
     found: list[tuple[Array, str, str]] = []
     loose: dict[str, list[Array]] = {}

@@ -30,7 +30,7 @@ from runningbond.dynamics import Criteria, Run, State, ramp, settle
 from runningbond.dynamics.collapse import CALM, CollapseDetector
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.pictures.charts import LOOKS, looks_of
-from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies import Chart, Edge, Part, Row, Rows, Study, run_around
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, known_wall
 
 LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)  # local damping α
@@ -139,11 +139,11 @@ def _bisected(before: Callable[[float], bool], low: float, high: float) -> float
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Edges: smallest and largest α and ξ with which every verdict is right, and the number of wrong verdicts."""
+    """Edges: ranges of α and ξ around the suite's with only right verdicts, and the number of wrong verdicts."""
     bad = {(row["α"], row["ξ"]) for row in rows[MAPS] if row["verdict"] != "right"}
-    alphas = [a for a in LOCALS if (a, VISCOUS) not in bad]
-    xis = [x for x in VISCOSITIES if (LOCAL, x) not in bad]
-    ends = {"smallest α": alphas[0], "largest α": alphas[-1], "smallest ξ": xis[0], "largest ξ": xis[-1]}
+    alphas = run_around(LOCAL, LOCALS, {a for a in LOCALS if (a, VISCOUS) not in bad})
+    xis = run_around(VISCOUS, VISCOSITIES, {x for x in VISCOSITIES if (LOCAL, x) not in bad})
+    ends = {"smallest α": alphas[0], "largest α": alphas[1], "smallest ξ": xis[0], "largest ξ": xis[1]}
     right = [Edge(f"{end} with which every verdict is right, the other as in the suite", ends[end]) for end in ends]
     wrong = sum(row["verdict"] == "wrong" for row in rows[MAPS])
     return [*right, Edge("wrong verdicts with local damping and the joints' viscosity", wrong)]

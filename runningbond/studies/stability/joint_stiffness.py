@@ -14,10 +14,11 @@ from runningbond.joints.stiffness import SOFT
 from runningbond.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.pictures.charts import LOOKS, bracket
 from runningbond.scene import Scene, Stiffness
-from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies import Chart, Edge, Part, Row, Rows, Study, run_around
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
 NORMAL = tuple(10.0**power for power in range(5, 16))  # normal stiffnesses of the joints [Pa/m]
+OWN = 1e11  # of these, the one nearest to the stiffness of W1's joints
 RATIO = 0.4  # k_t / k_n, that of mortar with ν = 0.2
 FEM = (1e8, 1e12)  # stiffnesses between which fem is run; outside it takes minutes
 RUN = ("dem-static", "dem-dynamic", "fem")  # models that depend on the stiffness
@@ -82,9 +83,10 @@ def fits(rows: Rows) -> list[Edge]:
         farthest = max(loads, key=lambda load: abs(load - exact))
         edges.append(Edge(f"λ, {model}, of all collapses farthest from the certified", farthest, exact, TOLERANCE))
     bad = {row[K_N] for row in rows[COLLAPSES] if row["status"] != "collapse" or row.get("of the stiffness")}
-    silent = [normal for normal in NORMAL if normal not in bad]
-    ends = {"smallest": silent[0], "largest": silent[-1]}
-    return edges + [Edge(f"{end} k_n at which all models collapse and say nothing [Pa/m]", ends[end]) for end in ends]
+    ends = zip(("smallest", "largest"), run_around(OWN, NORMAL, {*NORMAL} - bad), strict=True)
+    return edges + [
+        Edge(f"{end} k_n at which all models collapse and say nothing [Pa/m]", value) for end, value in ends
+    ]
 
 
 def _draw(figure: Figure, rows: Rows) -> None:

@@ -22,7 +22,7 @@ from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.limit import limit_nonassociated
 from runningbond.pictures.charts import LOOKS, looks_of
 from runningbond.scene import Array
-from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies import Chart, Edge, Part, Row, Rows, Study, run_around
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_scene, known_wall
 
 SUITE = Criteria(collapse=U_CRIT)
@@ -82,12 +82,10 @@ def believed(name: str, rest: float) -> float:
 def plateau(rows: Sequence[Row]) -> tuple[float, float]:
     """Smallest and largest value of a criterion around the suite's with the same λ, to within the width of brackets."""
     values = [row["value"] for row in rows]
-    own = values.index(DEFAULT[rows[0]["criterion"]])
-    multiplier = rows[own]["λ"]
-    same = [row.get("λ") is not None and abs(row["λ"] - multiplier) <= WIDTH * multiplier for row in rows]
-    others = [-1, *(place for place, is_same in enumerate(same) if not is_same), len(rows)]
-    first, last = max(x for x in others if x < own) + 1, min(x for x in others if x > own) - 1
-    return values[first], values[last]
+    own = DEFAULT[rows[0]["criterion"]]
+    multiplier = rows[values.index(own)]["λ"]
+    found = [row for row in rows if row.get("λ") is not None]
+    return run_around(own, values, {row["value"] for row in found if abs(row["λ"] - multiplier) <= WIDTH * multiplier})
 
 
 def sweep(rows: Rows, name: str, criterion: str) -> list[Row]:
