@@ -413,7 +413,7 @@ class Wall:
 
     def __repr__(self) -> str:
         low, high = self.scene.blocks.extent(self.scene.wall)
-        (length, height), count = high - low, self.scene.count_blocks(self.scene.wall)
+        (length, height), count = high - low, self.scene.count_blocks()
         return f"<Wall {self.scene.title!r}: {count} block{'s' * (count != 1)}, {length:.4g} × {height:.4g} m>"
 
     def _repr_svg_(self) -> str:

@@ -33,7 +33,7 @@ def rows(scene: Scene) -> list[Row]:
 
 def _blocks(scene: Scene) -> Iterator[Row]:
     low, high = scene.blocks.extent(scene.wall)
-    count, pieces = scene.count_blocks(scene.wall), int(scene.masonry.sum())
+    count, pieces = scene.count_blocks(), int(scene.masonry.sum())
     parts = "" if pieces == count else f" in {pieces} parts"
     yield "blocks", f"{count}{parts}, of which {scene.count_blocks(scene.fixed)} held"
     for k in used_block_materials(scene):

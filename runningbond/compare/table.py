@@ -80,7 +80,7 @@ def cost_sheets(comparison: Comparison) -> list[Sheet]:
     """Degrees of freedom, steps and seconds, one table per group of scenes."""
     sheets = []
     for title, names in comparison.groups().items():
-        cells = {name: [str(_blocks(comparison.scenes[name]))] for name in names}
+        cells = {name: [str(comparison.scenes[name].count_blocks())] for name in names}
         title += ": degrees of freedom / steps / seconds"
         sheets.append(_sheet(comparison, title, ["blocks"], cells, _cost))
     return sheets
@@ -109,14 +109,9 @@ def csv_text(comparison: Comparison) -> str:
                 values = outcome.summary()
             elif (reason := comparison.campaign.inapplicable.get((name, model.name))) is not None:
                 values = {"status": "not applicable", "message": reason}
-            own = [name, scene.title, source, _blocks(scene), model.name, "N" if is_force(scene) else "1"]
+            own = [name, scene.title, source, scene.count_blocks(), model.name, "N" if is_force(scene) else "1"]
             rows.append([*own, *map(values.get, scalars), *map(printed.get, labels)])
     return csv_lines(rows)
-
-
-def _blocks(scene: Scene) -> int:
-    """Number of blocks of a wall, without a beam; parts of one block count once."""
-    return scene.count_blocks(scene.wall)
 
 
 def corrected_homo(scene: Scene) -> float:

@@ -221,7 +221,7 @@ def run_model(
     if observe is not None:
         check_observer("observe", observe)
     model.check(scene)
-    if model.name in {own.name for own in _EVERY_MODEL}:  # also one that `going_far` has set to finite displacements
+    if model.name in MODELS:  # also one that `going_far` has set to finite displacements
         check_settings(model.name, scene, parameters)
     if observe is not None and (model.observer or model.progress):
         parameters["observe"] = observe
@@ -351,7 +351,7 @@ def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings:
         As in `check_response`, and for unknown settings.
     """
     follow = check_response(model, scene, scale)
-    own = OF_RESPONSES if find_model(model) is not MODELS["fem"] else (*OF_RESPONSES, "cells", "modes")
+    own = (*OF_RESPONSES, "cells", "modes") if find_model(model).name == "fem" else OF_RESPONSES
     check_response_settings(settings, own)
     from runningbond.dynamics import beam_note
     from runningbond.joints import impact_note

@@ -29,7 +29,7 @@ def wall_caption(scene: Scene) -> Caption:
     used = used_block_materials(scene)
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
     density += "" if any(scene.load.gravity) else ", no gravity"
-    n, cracks = scene.count_blocks(scene.wall), int(scene.joints.inner.sum())
+    n, cracks = scene.count_blocks(), int(scene.joints.inner.sum())
     size = f"{length:.4g} × {height:.4g} m, {thickness_text(scene)}{density}"
     counts = f"{counted(n, 'block')}, {counted(len(scene.joints) - cracks, 'joint')}"
     counts += f", {counted(cracks, 'potential crack')}" if cracks else ""

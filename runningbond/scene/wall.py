@@ -166,9 +166,9 @@ class Scene:
         """Mask of the wall's blocks, without a beam on top, ``(nb,)``."""
         return self.wall & ~self.is_beam
 
-    def count_blocks(self, among: Mask) -> int:
-        """Number of the wall's blocks in a mask of blocks ``(nb,)``: parts of one block count once, a beam does not."""
-        return len(np.unique(self.part_of[among & self.masonry]))
+    def count_blocks(self, among: Mask | None = None) -> int:
+        """Number of the wall's blocks, or of those in a mask ``(nb,)``: parts of one count once, a beam does not."""
+        return len(np.unique(self.part_of[self.masonry if among is None else among & self.masonry]))
 
     @property
     def drive(self) -> Drive | None:

@@ -34,7 +34,7 @@ class StudiedWall:
     @property
     def blocks(self) -> int:
         """Number of blocks."""
-        return self.scene.count_blocks(self.scene.wall)
+        return self.scene.count_blocks()
 
     def interval(self) -> Interval | None:
         """Interval of the answer, certified by non-associated limit analysis if it has to be; None if it is unknown."""
