@@ -1,4 +1,7 @@
-"""Parallel execution of a campaign's tasks: in processes on this machine, or by the joblib backend that is set."""
+"""Parallel execution of a campaign's tasks: in processes on this machine, or by the joblib backend that is set.
+
+Its pictures are drawn likewise, while the process that asked for them goes on.
+"""
 
 import multiprocessing
 import multiprocessing.resource_tracker
@@ -7,15 +10,18 @@ import signal
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
+from typing import TypeVar
 
 from joblib import Parallel, cpu_count, delayed, parallel_config
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from .tasks import Answer, Task
+
+Result = TypeVar("Result")
 
 POLL_INTERVAL = 1.0
 """Interval at which a process checks that its parent still exists [s]."""
@@ -62,6 +68,30 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
                     yield from side_by_side([task])
             except TerminatedWorkerError:
                 yield task.lost()
+
+
+@contextmanager
+def in_background(calls: Sequence[Callable[[], Result]], jobs: int) -> Iterator[Iterator[Result]]:
+    """Start calls in `jobs` processes, as in `in_processes`, and yield an iterator over their results in their order.
+
+    A single call is made in this process, when its result is asked for, as are all calls if `jobs` is 1.
+    """
+    with _processes(jobs if len(calls) > 1 else 1, len(calls)):
+        run = Parallel(return_as="generator", batch_size=1, pre_dispatch="all")
+        with _interruptions_held():
+            results = run(delayed(call)() for call in calls)
+        yield _all_results(calls, results)
+
+
+def _all_results(calls: Sequence[Callable[[], Result]], results: Iterator[Result]) -> Iterator[Result]:
+    """Yield results of calls; if a process is killed, the calls left are made in this process."""
+    done = 0
+    try:
+        for result in results:
+            done += 1
+            yield result
+    except TerminatedWorkerError:
+        yield from (call() for call in calls[done:])
 
 
 @contextmanager

@@ -90,7 +90,7 @@ def compare(
     except Interrupted as stopped:
         return report_interrupt(stopped, total, "cases", out, fresh=fresh)
     with locked(out):  # if two comparisons end at once, all files are from one of them
-        _report(Comparison(walls, chosen, campaign, published), out, tolerance)
+        _report(Comparison(walls, chosen, campaign, published), out, tolerance, jobs)
     for (name, model), reason in campaign.inapplicable.items():
         if name not in published:  # for published walls this is documented
             print(f"note: {name}, {model}: {reason}", file=sys.stderr)
@@ -122,7 +122,8 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
     return walls, published
 
 
-def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
+def _report(comparison: Comparison, out: Path, tolerance: float, jobs: int) -> None:
+    from runningbond.campaigns.processes import in_background
     from runningbond.compare import figures, plates
     from runningbond.compare.report import report_html
 
@@ -133,11 +134,17 @@ def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     for sheet in sheets:
         print_table(sheet)
     print(f"{counted(len(campaign), 'case')}, {len(campaign.reused)} of them already in {out}")
-    charts = figures.charts_of(comparison.only_published())
-    pictures = figures.draw_figures(charts, out) + plates.draw_plates(comparison, out)
+    drawings = plates.plate_drawings(comparison)
+    with in_background(list(drawings.values()), jobs) as drawn:
+        charts = figures.charts_of(comparison.only_published())
+        pictures = figures.draw_figures(charts, out)
+        page = report_html(comparison, charts, tolerance)
+        for name, content in zip(drawings, drawn, strict=True):
+            write_atomically(out / name, content)
+            pictures.append(out / name)
     if is_used:  # remove pictures of an earlier comparison with other walls
         for older in {out / name for name in (*figures.FILES, *plates.FILES)}.difference(pictures):
             older.unlink(missing_ok=True)
-    write_atomically(out / "report.html", report_html(comparison, charts, tolerance).encode())
+    write_atomically(out / "report.html", page.encode())
     tables = [out / name for name in ("table.csv", "table.md", "report.html")]
     print(f"written: {', '.join(map(str, [*tables, *pictures]))}")

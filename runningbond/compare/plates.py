@@ -1,16 +1,16 @@
 """Plates of a campaign: collapse mechanisms, walls by models, with the paper's Figures 8 to 10 and 12."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from functools import partial
 
 from runningbond.models import Model
 from runningbond.pictures.captions import multiplier_text
 from runningbond.pictures.deformed_shape import undeformed_shape
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.plate import PlateRow, draw_plate
-from runningbond.results import Outcome, write_atomically
+from runningbond.results import Outcome
 
 from .figures import SLENDERNESS, TEXTURES
 from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
@@ -55,15 +55,14 @@ def plates(comparison: Comparison) -> list[Plate]:
     return [plate for plate in present if _models(comparison, plate)]
 
 
-def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
-    """Draw every plate for which a comparison has a mechanism; returns the files written."""
-    written = []
+def plate_drawings(comparison: Comparison) -> dict[str, Callable[[], bytes]]:
+    """Drawing of every plate for which a comparison has a mechanism, by file name: a call that returns the content."""
+    calls: dict[str, Callable[[], bytes]] = {}
     for plate in plates(comparison):
         models = _models(comparison, plate)
         rows = [_row(comparison, name, label, models) for name, label in plate.walls.items()]
-        written.append(folder / f"{plate.name}.png")
-        write_atomically(written[-1], draw_plate(plate.title, [model.name for model in models], rows))
-    return written
+        calls[f"{plate.name}.png"] = partial(draw_plate, plate.title, [model.name for model in models], rows)
+    return calls
 
 
 def _models(comparison: Comparison, plate: Plate) -> list[Model]:

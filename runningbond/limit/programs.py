@@ -49,20 +49,22 @@ class Programs:
     solved: int = 0
     asks_interior_point: bool = True
     _power: float = field(init=False)
+    _has_shear: bool = field(init=False)
 
     def __post_init__(self) -> None:
         system, friction = self.system, self.system.strength.friction
         right = system.dead - system.opening @ system.strength.tension
         live = csc_array(-system.live[:, None])
-        others = [system.slip, system.tie, system.reaction, live]
+        slip, others = system.slip, [system.tie, system.reaction, live]
         rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in (friction, -friction)]
 
         def model(*parts: csc_array, right: Array) -> Simplex:
             return Simplex(csc_array(hstack([*parts, *others], format="csc")), right)
 
-        self._driven = model(*rays, right=right)
-        self._frozen = model(-system.opening, right=right)
-        self._moved = model(system.opening, right=np.zeros(system.freedoms))
+        self._has_shear = bool(np.any(system.strength.shear))
+        self._driven = model(*rays, *([slip] if self._has_shear else []), right=right)
+        self._frozen = model(-system.opening, slip, right=right)
+        self._moved = model(system.opening, slip, right=np.zeros(system.freedoms))
         self._models = self._driven, self._frozen, self._moved
         self._power = mechanism_scale(system)
 
@@ -141,7 +143,8 @@ class Programs:
         method: int = DUAL,
         pivots: int | None = None,
     ) -> ForceSolution:
-        low, high = bounds_of(self.system, forces, has_shear=True).T.copy()
+        has_shear = model is not self._driven or self._has_shear
+        low, high = bounds_of(self.system, forces, has_shear=has_shear).T.copy()
         if multiplier is not None:
             low[-1] = high[-1] = multiplier
         cost = np.zeros(len(low))

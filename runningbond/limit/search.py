@@ -20,13 +20,15 @@ from .equilibrium import Equilibrium
 from .force_program import ForceSolution
 from .programs import Programs, Vertices
 from .search_log import Observer, SearchLog
-from .starts import ORIGINS, ROUND, Start
+from .starts import ROUND, Start
 
-STARTS = 160
+STARTS = 400
 """Largest number of starts."""
 
-MAX_DRY_STARTS = 2 * ROUND * len(ORIGINS)
-"""Number of consecutive starts without a lower load after which the search ends: every kind of start twice."""
+DRY_STARTS, MANY_POINTS = 64, 600
+"""Number of consecutive starts without a lower load that ends the search of a wall of at least so many joint points.
+Walls of fewer points are given more starts, which cost less there: rare mechanisms need them.
+"""
 
 AFFORDED_POINTS = 22_000
 """Joint points up to which one program beyond 20 is allowed; programs cost as the power of 2.5 of the points."""
@@ -41,8 +43,9 @@ def programs_allowed(system: Equilibrium) -> int:
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Number of consecutive starts without a lower load that ends the search: smaller for walls of few freedoms."""
-    return min(MAX_DRY_STARTS, max(8, 2 * system.freedoms))
+    """Number of consecutive starts without a lower load that ends the search, limited for walls of few freedoms."""
+    starts = DRY_STARTS * max(1.0, MANY_POINTS / max(1, len(system.points)))
+    return min(int(starts), max(8, 2 * system.freedoms))
 
 
 def search(
@@ -66,7 +69,7 @@ def search(
     found.dry, made, stopped = 0, 0, Event()
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
-    vertices: Vertices = (None, None, None)
+    vertices: list[Vertices] = [(None, None, None)] * ROUND
     patient = len(system.points) >= PATIENT_POINTS
     most = found.cost + programs_allowed(system) if most is None else most
     while made < starts:
@@ -74,7 +77,8 @@ def search(
             programs.asks_interior_point = patient
         numbers = range(made, min(starts, made + ROUND) if made else 1)
         before = sorted(found.certificates, key=least_multiplier)
-        batch = [Start(number, associated, before, dict(known), place, vertices) for number in numbers]
+        pairs = zip(numbers, vertices, strict=False)  # the first start is alone, and the last round may be short
+        batch = [Start(number, associated, before, dict(known), place, last) for number, last in pairs]
         try:
             _run(batch, crew)
         except KeyboardInterrupt:
@@ -84,7 +88,7 @@ def search(
             known |= start.known
             _merge(found, start.found)
         made += len(batch)
-        vertices = crew[0].vertices if made == 1 else vertices
+        vertices = [start.vertices for start in batch] if len(batch) == ROUND else [batch[0].vertices] * ROUND
         observe(found)
         if found.interrupted or found.frictionless:
             break

@@ -37,10 +37,7 @@ ROUND = 4
 Origin: TypeAlias = Literal["random", "balanced", "known", "neighbourhood"]
 """Initial pressures of a start: random, in balance with a random load, of a certificate, or near one."""
 
-ORIGINS: tuple[Origin, ...] = (
-    *("random", "balanced", "known", "neighbourhood"),
-    *("known", "balanced", "known", "neighbourhood"),
-)
+ORIGINS: tuple[Origin, ...] = ("random", "known", "balanced", "known", "neighbourhood", "known")
 """Origins of starts 0 to 3, 4 to 7, etc., in turn; 0 to 2 begin from the associated solution whatever their origin.
 
 Rounds end one start later, so that the last start of a round has the origin of the next one's first three.
@@ -74,7 +71,7 @@ class Start:
     place
         Centroids of the movable blocks ``(n, 2)`` [m], if neighbourhoods are to be searched.
     vertices
-        Vertices from which its programs start.
+        Vertices from which its programs start; afterwards those at which they ended.
     """
 
     number: int
@@ -100,6 +97,7 @@ class Start:
                 best = self.found.best
                 self.found.certificates += () if best is None else descent.around(best, rng)
         finally:
+            self.vertices = programs.vertices
             self.found.add_programs(programs.solved - solved)
 
     def _certificates(self, descent: Descent, rng: np.random.Generator) -> Iterator[Certificate]:

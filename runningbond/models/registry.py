@@ -113,7 +113,7 @@ _EVERY_MODEL = (
         parameters=("starts", "workers", "programs"),
         progress=partial(_PROGRESS, "SearchProgress"),
         interruptible=True,
-        cost=Cost(5.0, 0.74, 2.14, weightless=1.7),
+        cost=Cost(5.0, 0.69, 1.82, weightless=1.2),
         colour="#9b471c",
         marker="s",
     ),

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from functools import partial
 
 import psutil
 import pytest
@@ -23,6 +24,33 @@ def test_number_of_processes_is_limited_by_cores_and_tasks(
     monkeypatch.setattr(processes, "cpu_count", lambda: cores)
     with processes._processes(jobs, tasks):
         assert effective_n_jobs(None) == started
+
+
+@pytest.mark.parametrize(("calls", "jobs", "elsewhere"), [(2, 2, True), (2, 1, False), (1, 2, False)])
+def test_calls_in_background_are_made_by_other_processes(calls: int, jobs: int, elsewhere: bool) -> None:
+    """A single call, and all calls of one job, are made here, when their results are asked for."""
+    with processes.in_background([os.getpid] * calls, jobs) as results:
+        found = list(results)
+    assert len(found) == calls
+    assert all((number != os.getpid()) == elsewhere for number in found)
+
+
+def test_results_from_background_keep_the_order_of_calls() -> None:
+    with processes.in_background([partial(divmod, k, 3) for k in range(7)], 2) as results:
+        assert list(results) == [divmod(k, 3) for k in range(7)]
+
+
+def number_unless(here: int) -> int:
+    """The number of this process, which is killed unless it is the one `here`."""
+    if os.getpid() != here:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return here
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signal")
+def test_calls_of_killed_processes_are_made_here() -> None:
+    with processes.in_background([partial(number_unless, os.getpid())] * 3, 2) as results:
+        assert list(results) == [os.getpid()] * 3
 
 
 WORKER = """

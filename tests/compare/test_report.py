@@ -22,7 +22,7 @@ from runningbond.campaigns import Campaign
 from runningbond.commands.command_line import command
 from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.figures import CURVE_START, charts_of, draw_figures, table_2, wall_curves
-from runningbond.compare.plates import draw_plates, plates
+from runningbond.compare.plates import plate_drawings, plates
 from runningbond.compare.report import FULL_COLOUR, report_html, verdict
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
 from runningbond.models import MODELS
@@ -68,7 +68,11 @@ def comparison() -> Comparison:
 def drawn(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Charts and plates."""
     folder = tmp_path_factory.mktemp("plates")
-    return draw_figures(charts_of(comparison), folder) + draw_plates(comparison, folder)
+    written = draw_figures(charts_of(comparison), folder)
+    for name, draw in plate_drawings(comparison).items():
+        (folder / name).write_bytes(draw())
+        written.append(folder / name)
+    return written
 
 
 @pytest.fixture(scope="module")
