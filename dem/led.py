@@ -183,7 +183,7 @@ def _judge(
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     ends = run.fell or formed(outcome.curve, tolerance, settles=lead.settles, least=_least(lead))
     if ends and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
-        fall = f"; the wall falls at {at}, this is of its last rest" if run.fell else ""
+        fall = f"; the wall falls at {at}, and the answer is that of its last rest" if run.fell else ""
         return replace(
             outcome, status="collapse", multiplier=answers[-1], lower=lower, upper=upper, message=what + fall
         )

@@ -246,7 +246,7 @@ class Lead:
     def fall(self, curve: Array) -> str:
         """Note on how a wall has fallen at the end of its curve ``(n, 2)``."""
         if self.settles:
-            return f"the wall falls beyond {abs(curve[-1, 0]):.4g} m, this is of its last rest"
+            return f"the wall falls beyond {abs(curve[-1, 0]):.4g} m, and the answer is that of its last rest"
         return f"the wall falls beyond {np.abs(curve[:, 0]).max():.4g} m"
 
     def crushed(self, state: State) -> Array:

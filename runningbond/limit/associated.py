@@ -41,6 +41,9 @@ STRENGTH_CAP = 1e6
 Joints rarely reach such strengths, and numbers that large would swamp the other forces of the program.
 """
 
+FRICTION_CAP = 1e3
+"""Largest tan φ of a program that is solved instead of one with a tan φ of 1e6, on which HiGHS may fail."""
+
 BOUND_MARGIN = 5e-10
 """Relative amount by which `proved_bound` raises a bound before rounding it up; at most half of the ninth digit."""
 
@@ -194,12 +197,28 @@ def _solved(system: Equilibrium) -> LimitState:
     if forces.status in ("infeasible", "numerical"):  # if the interior point cannot decide, the simplex method does
         forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
     state = LimitState(system, forces)
-    if forces.status == "optimal" and state.measures["penetration"] > ROUNDING and not is_large(system):
+    if is_large(system):
+        return state
+    if forces.status == "numerical":
+        return _with_capped_friction(system) or state
+    if forces.status == "optimal" and state.measures["penetration"] > ROUNDING:
         # HiGHS treats joints of very little friction as frictionless, so that they carry any pressure.
         exact = _proved(system)
         if exact is not None and exact.forces.status == "optimal":
             return exact
     return state
+
+
+def _with_capped_friction(system: Equilibrium) -> LimitState | None:
+    """Return the state that the solution with a tan φ of at most `FRICTION_CAP` proves; None if it proves none.
+
+    Forces admissible with less friction are admissible with more, and a mechanism without slip is admissible with any.
+    """
+    strength = system.strength
+    weaker = replace(strength, friction=strength.friction.clip(max=FRICTION_CAP))
+    state = LimitState(system, solve_forces(replace(system, strength=weaker), coulomb(weaker)))
+    proves = state.forces.status == "unbounded" or (state.forces.status == "optimal" and state.sound)
+    return state if proves else None
 
 
 def _proved(system: Equilibrium) -> LimitState | None:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -479,6 +480,23 @@ def test_blocks_that_cannot_slide_topple_as_one() -> None:
     outcome = limit(scene)
     assert outcome.status == "collapse"
     assert outcome.lower == pytest.approx(0.016 / 0.5, rel=1e-6)
+
+
+def test_load_without_slip_is_that_of_less_friction() -> None:
+    """Three cracked stones fall without slip, at the same λ with any tan φ; with 1e6 HiGHS solves no program."""
+    beds = [(0, 0), (0.433, 0.683), (0.866, 0.881625), (1.299, 1.174)]
+    stones = [
+        np.array([(0, left), (1, right), (1, upper_right), (0, upper_left)])
+        for (left, right), (upper_left, upper_right) in pairwise(beds)
+    ]
+    loads = []
+    for joint in (JointMaterial(100.0), JointMaterial(1e6)):
+        load = Load(live=(Lateral((1.0, 0.0)),))
+        material = {"block": BlockMaterial(1.0), "joint": joint, "inner_joint": joint}
+        outcome = limit(build_scene("stones", stones, thickness=0.12, load=load, **material))  # type: ignore[arg-type]
+        assert outcome.status == "collapse", outcome.message
+        loads.append(outcome.multiplier)
+    assert loads[1] == pytest.approx(loads[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("friction", [10.0, 1e3, 1e4, 1e5, 3e5, 1e6])
