@@ -159,7 +159,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     message = outcome.message
     if len(paths) > 1:
         other = f"with load steps {OTHER_STEP:g} times as long {_loads(paths[1])}"
-        message += f"; it depends on the load path: {_loads(first)}, {other}; other paths may differ by more"
+        message += f"; these loads depend on the load path: {_loads(first)}, {other}; other paths may differ by more"
     if len(found) > 1:
         unit = first.system.equilibrium.live_unit
         upper, fall = unit * max(ends(path)[1] for path in ways), unit * min(ends(path)[1] for path in found)

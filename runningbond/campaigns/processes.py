@@ -1,6 +1,6 @@
 """Parallel execution of a campaign's tasks: in processes on this machine, or by the joblib backend that is set.
 
-Its pictures are drawn likewise, while the process that asked for them goes on.
+Pictures of a comparison are drawn in processes of this machine, while the process that asked for them goes on.
 """
 
 import multiprocessing
@@ -74,13 +74,19 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
 def in_background(calls: Sequence[Callable[[], Result]], jobs: int) -> Iterator[Iterator[Result]]:
     """Start calls in `jobs` processes, as in `in_processes`, and yield an iterator over their results in their order.
 
-    A single call is made in this process, when its result is asked for, as are all calls if `jobs` is 1.
+    A single call is made in this process, when its result is asked for, as are all calls if `jobs` is 1. Calls whose
+    results are not asked for in the context are ended with it.
     """
     with _processes(jobs if len(calls) > 1 else 1, len(calls)):
         run = Parallel(return_as="generator", batch_size=1, pre_dispatch="all")
         with _interruptions_held():
             results = run(delayed(call)() for call in calls)
-        yield _all_results(calls, results)
+        try:
+            yield _all_results(calls, results)
+        finally:
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", ".*tasks (have been|which were)", UserWarning, "joblib")
+                results.close()
 
 
 def _all_results(calls: Sequence[Callable[[], Result]], results: Iterator[Result]) -> Iterator[Result]:

@@ -90,7 +90,8 @@ def compare(
     except Interrupted as stopped:
         return report_interrupt(stopped, total, "cases", out, fresh=fresh)
     with locked(out):  # if two comparisons end at once, all files are from one of them
-        _report(Comparison(walls, chosen, campaign, published), out, tolerance, jobs)
+        # The machine that waits for a cluster may be shared.
+        _report(Comparison(walls, chosen, campaign, published), out, tolerance, jobs if cluster is None else 1)
     for (name, model), reason in campaign.inapplicable.items():
         if name not in published:  # for published walls this is documented
             print(f"note: {name}, {model}: {reason}", file=sys.stderr)

@@ -42,7 +42,7 @@ Joints rarely reach such strengths, and numbers that large would swamp the other
 """
 
 FRICTION_CAP = 1e3
-"""Largest tan φ of a program that is solved instead of one with a tan φ of 1e6, on which HiGHS may fail."""
+"""Largest tan φ of the program that is solved if HiGHS fails on that of the true one."""
 
 BOUND_MARGIN = 5e-10
 """Relative amount by which `proved_bound` raises a bound before rounding it up; at most half of the ninth digit."""
@@ -199,25 +199,30 @@ def _solved(system: Equilibrium) -> LimitState:
     state = LimitState(system, forces)
     if is_large(system):
         return state
-    if forces.status == "numerical":
-        return _with_capped_friction(system) or state
     if forces.status == "optimal" and state.measures["penetration"] > ROUNDING:
         # HiGHS treats joints of very little friction as frictionless, so that they carry any pressure.
         exact = _proved(system)
         if exact is not None and exact.forces.status == "optimal":
             return exact
+    if forces.status == "numerical" or (forces.status == "optimal" and not state.sound):
+        return _with_capped_friction(system) or state
     return state
 
 
 def _with_capped_friction(system: Equilibrium) -> LimitState | None:
     """Return the state that the solution with a tan φ of at most `FRICTION_CAP` proves; None if it proves none.
 
-    Forces admissible with less friction are admissible with more, and a mechanism without slip is admissible with any.
+    Forces admissible with less friction are admissible with more, and a mechanism is if no point slips whose friction
+    was reduced.
     """
     strength = system.strength
-    weaker = replace(strength, friction=strength.friction.clip(max=FRICTION_CAP))
-    state = LimitState(system, solve_forces(replace(system, strength=weaker), coulomb(weaker)))
-    proves = state.forces.status == "unbounded" or (state.forces.status == "optimal" and state.sound)
+    if strength.friction.max(initial=0.0) <= FRICTION_CAP:
+        return None
+    weaker = replace(system, strength=replace(strength, friction=strength.friction.clip(max=FRICTION_CAP)))
+    state = LimitState(system, solve_forces(weaker, coulomb(weaker.strength)))
+    if state.forces.status == "unbounded" and _balances_any_multiple(weaker):
+        return replace(state, self_locking=True)
+    proves = state.forces.status == "optimal" and state.sound and state.measures["penetration"] <= ROUNDING
     return state if proves else None
 
 

@@ -4,7 +4,9 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from functools import partial
+from pathlib import Path
 
 import psutil
 import pytest
@@ -27,17 +29,39 @@ def test_number_of_processes_is_limited_by_cores_and_tasks(
 
 
 @pytest.mark.parametrize(("calls", "jobs", "elsewhere"), [(2, 2, True), (2, 1, False), (1, 2, False)])
-def test_calls_in_background_are_made_by_other_processes(calls: int, jobs: int, elsewhere: bool) -> None:
-    """A single call, and all calls of one job, are made here, when their results are asked for."""
+def test_which_processes_make_calls_in_background(calls: int, jobs: int, elsewhere: bool) -> None:
+    """A single call, and all calls of one job, are made in this process."""
     with processes.in_background([os.getpid] * calls, jobs) as results:
         found = list(results)
     assert len(found) == calls
     assert all((number != os.getpid()) == elsewhere for number in found)
 
 
+def later(number: int) -> int:
+    """The number, after a time [s] that is longest for 0."""
+    time.sleep(0.5 if number == 0 else 0.0)
+    return number
+
+
 def test_results_from_background_keep_the_order_of_calls() -> None:
-    with processes.in_background([partial(divmod, k, 3) for k in range(7)], 2) as results:
-        assert list(results) == [divmod(k, 3) for k in range(7)]
+    with processes.in_background([partial(later, k) for k in range(4)], 2) as results:
+        assert list(results) == [0, 1, 2, 3]
+
+
+@pytest.mark.filterwarnings("error")
+def test_error_ends_calls_in_background(tmp_path: Path) -> None:
+    """They once went on, and the process with them, until all were done."""
+    with pytest.raises(KeyboardInterrupt), processes.in_background([partial(touch_late, tmp_path)] * 6, 2):
+        raise KeyboardInterrupt
+    with processes.in_background([partial(later, 1)] * 2, 2) as results:
+        assert list(results) == [1, 1]
+    assert len(list(tmp_path.iterdir())) <= 2
+
+
+def touch_late(folder: Path) -> None:
+    """Leave a file after a while."""
+    time.sleep(1.0)
+    (folder / f"{os.getpid()}-{time.monotonic_ns()}").touch()
 
 
 def number_unless(here: int) -> int:

@@ -15,11 +15,11 @@ from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociate
 from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import driving_forces
 from runningbond.limit.descent import Descent, is_lower
-from runningbond.limit.force_program import frozen_friction, solve_forces
-from runningbond.limit.programs import Programs
-from runningbond.limit.search import search
+from runningbond.limit.force_program import coulomb, frozen_friction, solve_forces
+from runningbond.limit.programs import Programs, Vertices
+from runningbond.limit.search import dry_allowed, search
 from runningbond.limit.search_log import SearchLog
-from runningbond.limit.starts import ROUND
+from runningbond.limit.starts import ROUND, Start
 from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
@@ -59,15 +59,44 @@ def rubble(seed: int, *, mirrored: bool = False, shuffled: int | None = None, si
     return build_scene("rubble", blocks, thickness=0.12, **material)  # type: ignore[arg-type]
 
 
-def test_more_starts_certify_far_smaller_loads() -> None:
-    """The first start finds only the associated load; all starts certify one at least a fifth smaller."""
-    scene = rubble(1)
+@pytest.mark.parametrize(("seed", "part"), [(1, 0.8), (3, 0.87)])
+def test_more_starts_certify_far_smaller_loads(seed: int, part: float) -> None:
+    """The first start finds only the associated load; all starts certify one that is a `part` of it.
+
+    The search may miss the lowest mechanisms: other random numbers certify 0.54 of the second wall's.
+    """
+    scene = rubble(seed)
     bound = limit(scene).multiplier or 0.0
     one, all_ = limit_nonassociated(scene, starts=1), limit_nonassociated(scene)
     assert one.lower == pytest.approx(bound, rel=1e-6)
     assert all_.lower is not None
-    assert all_.lower < 0.8 * bound
+    assert all_.lower < part * bound
     assert all_.upper == pytest.approx(bound, rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "starts"), [("panel-02", 64), ("wall-w3", 188), ("wall-w1", 198)])
+def test_small_walls_are_given_more_starts(name: str, starts: int) -> None:
+    """The 204 joint points of W3 leave 64 * 600 / 204 starts in vain; W1 has fewer, twice its 99 freedoms."""
+    assert dry_allowed(equilibrium(published_scene(name)).under_live_load()) == starts
+
+
+def test_start_continues_from_one_of_the_round_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The four starts of a round begin at the vertices where those of the round before ended, the first four at one."""
+    begun: dict[int, Vertices] = {}
+    ended: dict[int, Vertices] = {}
+
+    def run(start: Start, programs: Programs) -> None:
+        begun[start.number] = start.vertices
+        original(start, programs)
+        ended[start.number] = start.vertices
+
+    original = Start.run
+    monkeypatch.setattr(Start, "run", run)
+    system = equilibrium(published_scene("wall-w3")).under_live_load()
+    search(system, solve_forces(system, coulomb(system.strength)), starts=11)
+    assert begun[0] == (None, None, None)
+    for number in range(1, 11):
+        assert begun[number] is ended[max(0, number - ROUND)]
 
 
 REFERENCE_LOADS = {
