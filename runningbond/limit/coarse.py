@@ -36,7 +36,7 @@ from .sequences import WEIGHTS, averaged
 COARSE_POINTS = 1000
 """Number of joint points from which a wall is searched in parts first; for smaller walls a direct search is as fast."""
 
-SEQUENCE_PROGRAMS = 5
+SEQUENCE_PROGRAMS = 8
 """Number of programs of a sequence that shows where a wall may separate."""
 
 GLUE_LEVELS = tuple(float(f"{digit}e-{power}") for power in (2, 3, 4, 5) for digit in (5, 2, 1))
@@ -49,7 +49,7 @@ of the first two sequences together."""
 FEW_PROGRAMS, PROGRAMS = 60, 400
 """Number of programs after which the search of a glued wall ends: of one glued by one program, and by several."""
 
-MAX_DRY_STARTS, MAX_STARTS = 5, 40
+MAX_DRY_STARTS, MAX_STARTS = 4, 40
 """Number of consecutive sequences without a lower load after which no more are run, and largest number of sequences."""
 
 COST_FACTOR = 4
