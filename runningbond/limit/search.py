@@ -27,6 +27,7 @@ STARTS = 400
 
 DRY_STARTS, MANY_POINTS = 64, 600
 """Number of consecutive starts without a lower load that ends the search of a wall of at least so many joint points.
+
 Walls of fewer points are given more starts, which cost less there: rare mechanisms need them.
 """
 
@@ -43,7 +44,7 @@ def programs_allowed(system: Equilibrium) -> int:
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Number of consecutive starts without a lower load that ends the search, limited for walls of few freedoms."""
+    """Number of consecutive starts without a lower load that ends the search: at most two per freedom, or eight."""
     starts = DRY_STARTS * max(1.0, MANY_POINTS / max(1, len(system.points)))
     return min(int(starts), max(8, 2 * system.freedoms))
 

@@ -63,7 +63,7 @@ def rubble(seed: int, *, mirrored: bool = False, shuffled: int | None = None, si
 def test_more_starts_certify_far_smaller_loads(seed: int, part: float) -> None:
     """The first start finds only the associated load; all starts certify one that is a `part` of it.
 
-    The search may miss the lowest mechanisms: other random numbers certify 0.54 of the second wall's.
+    The search may miss the lowest mechanisms: with other random numbers that of the second wall is far smaller.
     """
     scene = rubble(seed)
     bound = limit(scene).multiplier or 0.0
