@@ -20,7 +20,7 @@ from .collapse import U_CRIT, Criteria
 from .dead_load import fall_under_dead_load
 from .inertia import beam_note
 from .led import UNACCOUNTED, collapse_of_led
-from .load_stepping import LoadSteps, load_steps
+from .load_stepping import LoadSteps, load_steps, smallest_width
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
@@ -45,6 +45,9 @@ LARGEST_ELASTIC = 20.0
 
 DRAWN_OVERLAP = 0.02
 """Overlap of joints in a drawn mechanism, relative to the largest displacement, that is barely visible."""
+
+SMALL_LOAD = 10.0
+"""Load, in smallest widths of a bracket, up to which a wall may pass as at rest although nothing balances the load."""
 
 BUDGET = 2_000_000
 """Time steps after which a load is left undecided."""
@@ -141,6 +144,7 @@ def collapse_by_steps(
         outcome = replace(outcome, **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
     outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears)
+    outcome = _without_excluded_rests(outcome, above, smallest_width(run, criteria))
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves under its dead load as far as counts as collapse"
@@ -251,6 +255,22 @@ def _judge(
         message=f"largest load at rest and smallest in collapse{beyond}, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
+
+
+def _without_excluded_rests(outcome: Outcome, bound: float | None, width: float) -> Outcome:
+    """Outcome without rests at loads of up to `SMALL_LOAD` resolved widths that a proved `bound` excludes.
+
+    Under a load whose power on the mechanism is below the resolution of the criterion of rest, any wall passes as at
+    rest. Larger loads may exceed the bound of joints that crush, because the run evaluates these at points only.
+    """
+    if bound is None or outcome.lower is None or not bound + width < outcome.lower <= SMALL_LOAD * width:
+        return outcome
+    message = (
+        f"it passed as at rest up to {outcome.lower:.3g}, but no load above {bound:.3g} can be balanced: "
+        "loads this small move it too little to be seen"
+    )
+    message = joined(message, outcome.message if outcome.status == "undecided" else "")
+    return replace(outcome, status="undecided", multiplier=None, lower=0.0, message=message)
 
 
 def _never_fallen(

@@ -152,6 +152,11 @@ def load_steps(
     return search.result
 
 
+def smallest_width(run: Run, criteria: Criteria) -> float:
+    """Smallest width of a bracket [multiplier] that the criterion of rest can resolve."""
+    return RESOLVED * criteria.rest / (run.system.measure(run.system.live) or 1.0)
+
+
 @dataclass(eq=False)
 class _Search:
     """A search in progress; parameters are those of `load_steps`."""
@@ -242,8 +247,7 @@ class _Search:
     def _next_trial(self, step: float) -> float | None:
         """Next load to try; None if the bracket, or that around undecided loads, is narrow enough."""
         result, system = self.result, self.run.system
-        narrowest = RESOLVED * self.criteria.rest / (system.measure(system.live) or 1.0)
-        enough = max(self.tolerance * (result.upper or 0.0), narrowest)
+        enough = max(self.tolerance * (result.upper or 0.0), smallest_width(self.run, self.criteria))
         if result.width > enough:
             if not self.undecided.closed(result, enough):
                 return _next_load(result, step, self.undecided, self.tolerance, self.bound)

@@ -83,6 +83,23 @@ def test_message_names_unrestrained_block_that_drifts_away() -> None:
     assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
 
 
+def test_rests_under_loads_proved_too_large_are_not_reported() -> None:
+    """A weightless slab without tensile strength tips under any load at its upper corner; small ones do not show."""
+    scene = courses(
+        [[1]],
+        width=1.0,
+        height=0.02,
+        joint={"friction": 0.5, "cohesion": 1.0, "tensile_strength": 0.0, "mortar": MORTAR},
+        load={"gravity": 0.0, "live": {"kind": "point", "at": [0.0, 0.02], "force": [1.0, 0.0]}},
+    )
+    assert limit(scene).upper == pytest.approx(0.0, abs=1e-12)
+    outcome = dem_dynamic(scene, 0.5, budget=10_000)
+    assert outcome.status == "undecided"
+    assert outcome.multiplier is None
+    assert outcome.lower == 0.0
+    assert outcome.message.startswith("it passed as at rest up to ")
+
+
 def test_weightless_wall_carries_suddenly_applied_loads() -> None:
     """As in the study of loading rates: a block pressed on its base carries each load, applied in one step."""
     first = 1e-3 / WEIGHTLESS.system.measure(WEIGHTLESS.system.live)
