@@ -10,6 +10,7 @@ import numpy as np
 from runningbond.results.store import replacing
 from runningbond.scene import Indices, Scene, SceneError
 
+from .materials import element_data
 from .mesh import GROUPS, WallMesh, joint_group
 from .session import gmsh_session
 
@@ -17,9 +18,6 @@ TRIANGLE, QUADRILATERAL = 2, 3
 """gmsh's numbers for the two element types."""
 
 LAST_LINE = b"$EndElementData\n"
-
-NO_NUMBER = -1
-"""Value for the block of a joint element and for the joint of a triangle, which do not exist."""
 
 
 def write_mesh(mesh: WallMesh, scene: Scene, path: str | Path) -> None:
@@ -55,9 +53,9 @@ def _write_msh(mesh: WallMesh, scene: Scene, name: str) -> None:
     order = np.argsort(interface_group, kind="stable")
     interfaces, interface_group = mesh.interfaces[order], interface_group[order]
     n_triangles, n_interfaces = len(mesh.triangles), len(interfaces)
-    numbers = {
-        "block": np.concatenate([mesh.triangle_block, np.full(n_interfaces, NO_NUMBER)]),
-        "joint": np.concatenate([np.full(n_triangles, NO_NUMBER), mesh.joint[order]]),
+    data = {
+        name: np.concatenate([triangles, joints[order]])
+        for name, (triangles, joints) in element_data(mesh, scene).items()
     }
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
     node_group = _block_group(scene)[mesh.block]
@@ -78,7 +76,7 @@ def _write_msh(mesh: WallMesh, scene: Scene, name: str) -> None:
         gmsh.write(name)
         gmsh.option.setNumber("PostProcessing.SaveMesh", 0)
         tags = np.arange(n_triangles + n_interfaces) + 1
-        for title, values in numbers.items():
+        for title, values in data.items():
             view = gmsh.view.add(title)
             model = gmsh.model.getCurrent()
             gmsh.view.addHomogeneousModelData(view, 0, model, "ElementData", tags, values.astype(np.float64))
@@ -93,11 +91,8 @@ def _write_vtu(mesh: WallMesh, scene: Scene, name: str) -> None:
     import meshio
 
     cells = [("triangle", mesh.triangles), ("quad", mesh.interfaces)]
-    data = {
-        "block": [mesh.triangle_block, np.full(len(mesh.interfaces), NO_NUMBER)],
-        "joint": [np.full(len(mesh.triangles), NO_NUMBER), mesh.joint],
-        "group": [group + 1 for group in _groups(mesh, scene)],
-    }
+    data = {name: list(values) for name, values in element_data(mesh, scene).items()}
+    data["group"] = [group + 1 for group in _groups(mesh, scene)]
     if not len(mesh.interfaces):
         cells, data = cells[:1], {key: values[:1] for key, values in data.items()}
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])

@@ -387,6 +387,7 @@ def test_invalid_cells_are_refused(cells: int, fault: str) -> None:
 
 # --- files ---------------------------------------------------------------------------------------------------
 
+KINDS = ("triangle", "quad")
 WRITTEN = ("panel", "fixed first course", "off the lattice", "cracked", "one block")
 
 
@@ -444,6 +445,38 @@ def test_written_mesh_is_read_by_meshio(name: str, suffix: str, tmp_path: Path) 
         assert np.array_equal(group["quad"][order], joint_group(scene)[mesh.joint] + 1)
         assert (read.cell_data_dict["joint"]["triangle"] == -1).all()
         assert (read.cell_data_dict["block"]["quad"] == -1).all()
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
+def test_written_elements_have_the_parameters_of_their_materials(suffix: str, tmp_path: Path) -> None:
+    """Thickness times area times density is the wall's mass, a lintel is stiffer, and mortar has its stiffness."""
+    scene = courses(
+        [[1, 1], [0.5, 1, 0.5]],
+        block={"density": 1800.0, "young": 5e9, "poisson": 0.2},
+        materials={"oak": {"density": 700.0, "thickness": 0.3}},
+        assign=[{"block": "oak", "blocks": [3]}],
+        joint={"friction": 0.6, "cohesion": 1200.0, "mortar": {"young": 1e9, "poisson": 0.0, "thickness": 0.01}},
+    )
+    path, mesh = tmp_path / f"wall{suffix}", wall_mesh(scene)
+    write_mesh(mesh, scene, path)
+    read = meshio.read(path)
+    of_triangles, of_joints = ({name: data[kind] for name, data in read.cell_data_dict.items()} for kind in KINDS)
+    area = np.abs(np.linalg.det(read.points[read.cells_dict["triangle"]] + (0.0, 0.0, 1.0))) / 2
+    mass = of_triangles["thickness"] * area * of_triangles["density"]
+    oak, ground = of_triangles["block"] == 3, ~scene.wall[of_triangles["block"].astype(int)]
+    assert mass[oak].sum() == pytest.approx(0.4 * 0.175 * 0.3 * 700)
+    assert mass[~ground].sum() == pytest.approx(scene.mass[scene.wall].sum())
+    assert set(of_triangles["young"][~oak & ~ground]) == {5e9}
+    assert not of_triangles["young"][oak | ground].any()
+    assert set(of_triangles["poisson"][~oak & ~ground]) == {0.2}
+    assert set(of_joints["friction"]) == {0.6}
+    assert set(of_joints["cohesion"]) == {1200.0}
+    assert of_joints["tensile_strength"] == pytest.approx(2000.0)
+    assert set(of_joints["normal_stiffness"]) == {1e11}
+    assert set(of_joints["shear_stiffness"]) == {5e10}
+    assert set(of_joints["thickness"]) == {scene.thickness}  # oak is the thicker one of any two
+    assert not any(of_triangles[name].any() for name in ("friction", "cohesion", "normal_stiffness"))
+    assert not any(of_joints[name].any() for name in ("density", "young", "poisson"))
 
 
 def test_written_mesh_is_read_by_scikit_fem(tmp_path: Path) -> None:
