@@ -28,10 +28,24 @@ FIRST_TANGENTS = np.array([[1.0, 0.0], [0.6, 0.8], [0.6, -0.8], [0.0, 1.0], [0.0
 
 @dataclass(frozen=True)
 class StrengthDomain:
-    """Domain of the stresses that running bond can carry, from its block size and the strength of its joints."""
+    """Domain of the stresses that running bond can carry, from its block size and the strength of its joints.
+
+    Parameters
+    ----------
+    bond, joint
+        Size of a block, and material of the joints.
+    head
+        Material of the head joints, if it is not that of the bed joints. Those without mortar may be dry.
+    """
 
     bond: Bond
     joint: JointMaterial
+    head: JointMaterial | None = None
+
+    @property
+    def _joints(self) -> tuple[JointMaterial, ...]:
+        """Materials of the head joint and of the two bed joints of a block."""
+        return self.head or self.joint, self.joint, self.joint
 
     def strength(self, direction: tuple[float, float, float]) -> float:
         """Largest t for which t (Σ11, Σ22, Σ12), tension positive, is carried.
@@ -63,18 +77,19 @@ class StrengthDomain:
         size = float(np.abs(wanted).max())
         if size == 0.0:
             return float("inf")
-        friction, tension, shear = truncated_cone(self.joint)
-        crushing = self.joint.compressive_strength
-        unit = max(tension, shear) or crushing or 1.0
+        friction, tension, shear = np.array([truncated_cone(each) for each in self._joints]).T
+        crushing = np.array([each.compressive_strength or np.inf for each in self._joints])
+        crushes = bool(np.isfinite(crushing).any())
+        unit = float(max(tension.max(), shear.max()) or (crushing.min() if crushes else 1.0))
         # Unknowns: t, then σ and τ of a head joint and of the two bed joints of a block.
         balance = np.column_stack([np.append(-wanted * [1, 1, 2] / size, 0.0), self._powers()])
-        none, one = np.zeros((3, 1)), np.eye(3)
-        rows = np.block([[none, one, 0 * one], [none, friction * one, one], [none, friction * one, -one]])
-        right = np.repeat([tension, shear + friction * tension, shear + friction * tension], 3) / unit
-        if crushing is None:
-            largest, _ = _largest(balance, rows, right)
-        else:
+        none, one, slope = np.zeros((3, 1)), np.eye(3), np.diag(friction)
+        rows = np.block([[none, one, 0 * one], [none, slope, one], [none, slope, -one]])
+        right = np.concatenate([tension, shear + friction * tension, shear + friction * tension]) / unit
+        if crushes:
             largest = self._capped(balance, rows, right, crushing / unit)
+        else:
+            largest, _ = _largest(balance, rows, right)
         return max(0.0, largest) * unit / size
 
     def _powers(self) -> Array:
@@ -85,24 +100,29 @@ class StrengthDomain:
         share = np.array([height, half, half]) / height
         return np.hstack([opening.T * share, slip.T * share])
 
-    def _capped(self, balance: Array, rows: Array, right: Array, crushing: float) -> float:
-        """Largest t within caps on pressures, by cutting planes: tangents are added where tractions exceed the caps."""
-        stretch = np.sqrt(self.joint.cap_shear)
-        joint, side = np.repeat(np.arange(3), len(FIRST_TANGENTS)), np.tile(FIRST_TANGENTS, (3, 1))
+    def _capped(self, balance: Array, rows: Array, right: Array, crushing: Array) -> float:
+        """Largest t within caps on pressures, by cutting planes: tangents are added where tractions exceed the caps.
+
+        The caps are ``(3,)``, inf for a joint that does not crush.
+        """
+        stretch = np.sqrt([each.cap_shear for each in self._joints])
+        capped = np.flatnonzero(np.isfinite(crushing))
+        joint, side = np.repeat(capped, len(FIRST_TANGENTS)), np.tile(FIRST_TANGENTS, (len(capped), 1))
         for _ in range(ROUNDS):
             tangents = np.zeros((len(joint), 7))
             tangents[np.arange(len(joint)), 1 + joint] = -side[:, 0]
-            tangents[np.arange(len(joint)), 4 + joint] = stretch * side[:, 1]
-            rows, right = np.vstack([rows, tangents]), np.append(right, np.full(len(joint), crushing))
+            tangents[np.arange(len(joint)), 4 + joint] = stretch[joint] * side[:, 1]
+            rows, right = np.vstack([rows, tangents]), np.append(right, crushing[joint])
             largest, (sigma, tau) = _largest(balance, rows, right)
             used = np.column_stack([np.maximum(0.0, -sigma), stretch * tau])
             reach = np.hypot(*used.T)
-            joint = np.flatnonzero(reach > crushing * (1 + CAP_TOLERANCE))
+            excess = reach / crushing
+            joint = np.flatnonzero(excess > 1 + CAP_TOLERANCE)
             side = used[joint] / reach[joint, None]
             if not len(joint):
                 break
         # Scaled down until they satisfy the caps, the tractions carry t reduced by this factor.
-        return largest * crushing / max(float(reach.max()), crushing)
+        return largest / max(float(excess.max()), 1.0)
 
 
 def _largest(balance: Array, rows: Array, right: Array) -> tuple[float, Array]:

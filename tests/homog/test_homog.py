@@ -142,6 +142,19 @@ def test_crushing_joints_bound_the_strength_domain() -> None:
     assert uncapped.strength((0, -1, 2)) == pytest.approx(10)
 
 
+def test_head_joints_may_have_a_strength_of_their_own() -> None:
+    """Along the courses: the strength of the heads plus the cohesion of beds over half a block each."""
+    bond, beds, overlap = Bond(0.24, 0.06), JointMaterial(0.6, 1.0, compressive_strength=10.0), 0.24 / (2 * 0.06)
+    open_heads = StrengthDomain(bond, beds, JointMaterial(0.6))
+    assert open_heads.strength((1, 0, 0)) == pytest.approx(overlap * 1.0)
+    assert open_heads.strength((-1, 0, 0)) == math.inf
+    assert open_heads.strength((0, -1, 0)) == pytest.approx(10)
+    weak_heads = StrengthDomain(bond, beds, JointMaterial(0.4, 0.2, compressive_strength=3.0))
+    assert weak_heads.strength((1, 0, 0)) == pytest.approx(0.5 + overlap * 1.0)
+    assert weak_heads.strength((-1, 0, 0)) == pytest.approx(3 + overlap * 1.0)
+    assert weak_heads.strength((0, -1, 0)) == pytest.approx(10)
+
+
 @settings(max_examples=20, deadline=None)
 @given(
     shape=st.floats(0.2, 5.0),

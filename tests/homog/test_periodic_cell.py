@@ -79,26 +79,30 @@ def test_elastic_energy_of_the_cell_gives_the_closed_form_moduli(block: tuple[fl
 
 @pytest.mark.parametrize("block", [(0.24, 0.06), (0.06, 0.06), (0.06, 0.24)])
 @pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, -1, 1), (-1, -1, 1), (0.3, -2, 1)])
+@pytest.mark.parametrize("head", [JointMaterial(0.6, 1.0, 1 / 0.6), JointMaterial(0.4, 0.3, 0.5)])
 def test_limit_analysis_of_the_cell_gives_the_strength_domain(
-    block: tuple[float, float], direction: tuple[float, float, float]
+    block: tuple[float, float], direction: tuple[float, float, float], head: JointMaterial
 ) -> None:
     """Minimum dissipation of the cell over all mechanisms with unit power of Σ (kinematic theorem)."""
     joint = JointMaterial(0.6, 1.0, 1 / 0.6)
     unit = cell(*block)
     n = len(unit.points)
-    strength = point_strength(joint, unit.points.area)
+    bed = np.abs(unit.points.normal[:, 1]) > 0.5
+    beds, heads = (point_strength(each, unit.points.area) for each in (joint, head))
+    tension, shear = np.where(bed, beds.tension, heads.tension), np.where(bed, beds.shear, heads.shear)
+    friction = np.where(bed, joint.friction, head.friction)
     power = np.zeros(9 + n)
     power[6:9] = direction[0], direction[1], 2 * direction[2]
     no_translation = np.zeros((2, 9 + n))
     no_translation[0, 0] = no_translation[1, 1] = 1  # translation of the cell causes no jumps
     split = np.hstack([np.zeros((n, 9)), np.eye(n)])  # bounds |slip|
     found = linprog(
-        np.concatenate([strength.tension @ unit.opening, np.zeros(n)]) / unit.area,
+        np.concatenate([tension @ unit.opening, shear]) / unit.area,
         A_ub=np.vstack(
             [
                 np.hstack([unit.slip, -np.eye(n)]),
                 np.hstack([-unit.slip, -np.eye(n)]),
-                0.6 * split - np.hstack([unit.opening, np.zeros((n, n))]),
+                friction[:, None] * split - np.hstack([unit.opening, np.zeros((n, n))]),
             ]
         ),
         b_ub=np.zeros(3 * n),
@@ -106,4 +110,4 @@ def test_limit_analysis_of_the_cell_gives_the_strength_domain(
         b_eq=[1.0, 0, 0],
         bounds=[(None, None)] * 9 + [(0, None)] * n,
     )
-    assert found.fun == pytest.approx(StrengthDomain(Bond(*block), joint).strength(direction), rel=1e-9)
+    assert found.fun == pytest.approx(StrengthDomain(Bond(*block), joint, head).strength(direction), rel=1e-9)
