@@ -50,8 +50,8 @@ MASS_FACTOR = 1.452
 def with_coupled_masses(wall: ModalWall, system: BlockSystem) -> BlockSystem:
     """Give soft blocks inertia across their joints.
 
-    The system is returned unchanged if its blocks are stiff or too many, or if anything but loads acts on it: ties,
-    supports that move, a beam that drives the wall or is held at its height.
+    The system is returned unchanged if its blocks are stiff or too many, if it has no joints, or if anything but loads
+    acts on it: ties, supports that move, a beam that drives the wall or is held at its height.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def with_coupled_masses(wall: ModalWall, system: BlockSystem) -> BlockSystem:
         The wall's blocks, with the modal masses of `mass_scaling`.
     """
     scene, moving = wall.scene, np.isfinite(wall.mass)
-    more = scene.is_led or len(system.ties) or len(system.late)
+    more = scene.is_led or len(system.ties) or len(system.late) or not len(scene.joints)
     rigid = (wall.stiffness == 0)[moving]
     if more or (~scene.fixed).sum() > MOST_BLOCKS or rigid.all() or not rigid.any():
         return system

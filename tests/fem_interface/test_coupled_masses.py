@@ -16,7 +16,7 @@ from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.run import CALMING
 from runningbond.scene import Array, Closure, Indices, Scene, Stiffness
-from tests.walls import panel
+from tests.walls import courses, panel
 
 from .walls import GLUE, MORTAR, check_damping_dissipates, patch, wall
 
@@ -119,6 +119,13 @@ def test_published_walls_have_no_coupled_masses(name: str) -> None:
     found = modal_wall(published_scene(name))
     system = system_of(found)
     assert with_coupled_masses(found, system) is system
+
+
+def test_soft_blocks_without_joints_fall() -> None:
+    """Two blocks apart, each held at a corner; frequencies of the joints that they do not have were divided by."""
+    soft = {"density": 1.0, "young": 1e7, "poisson": 0.0}
+    outcome = fem(courses([[1, -0.5, 1]], block=soft, joint__mortar=MORTAR, support__kind="corners"), budget=1000)
+    assert outcome.status == "infeasible"
 
 
 def test_large_walls_have_no_coupled_masses(monkeypatch: pytest.MonkeyPatch) -> None:
