@@ -19,8 +19,8 @@ def element_data(mesh: WallMesh, scene: Scene) -> dict[str, tuple[Array | Indice
 
     ``block`` and ``joint`` are numbers in the scene, `NO_NUMBER` elsewhere. Of triangles ``thickness`` [m], ``density``
     [kg/m³], ``young`` [Pa] and ``poisson``, of joint elements ``thickness``, ``friction``, ``cohesion`` and
-    ``tensile_strength`` [Pa], ``normal_stiffness`` and ``shear_stiffness`` [Pa/m]; `NOTHING` elsewhere. Only the wall's
-    own blocks have elastic parameters, not its beam and the ground.
+    ``tensile_strength`` [Pa], ``normal_stiffness`` and ``shear_stiffness`` [Pa/m]; `NOTHING` elsewhere. The ground has
+    no density, and only the wall's own blocks have elastic parameters, not its beam.
     """
     block, joint = mesh.triangle_block, mesh.joint
     data: dict[str, tuple[Array | Indices, Array | Indices]] = {
@@ -40,7 +40,7 @@ def _of_blocks(scene: Scene) -> dict[str, Array]:
     materials = scene.block_materials
     elastic = np.array([(each.young or NOTHING, each.poisson if each.young else NOTHING) for each in materials])
     young, poisson = np.where(scene.masonry[:, None], elastic[scene.material_of_block], NOTHING).T
-    return {"density": scene.density, "young": young, "poisson": poisson}
+    return {"density": np.where(scene.wall, scene.density, NOTHING), "young": young, "poisson": poisson}
 
 
 def _of_joints(scene: Scene) -> dict[str, Array]:

@@ -468,6 +468,7 @@ def test_written_elements_have_the_parameters_of_their_materials(suffix: str, tm
     assert mass[~ground].sum() == pytest.approx(scene.mass[scene.wall].sum())
     assert set(of_triangles["young"][~oak & ~ground]) == {5e9}
     assert not of_triangles["young"][oak | ground].any()
+    assert not of_triangles["density"][ground].any()
     assert set(of_triangles["poisson"][~oak & ~ground]) == {0.2}
     assert set(of_joints["friction"]) == {0.6}
     assert set(of_joints["cohesion"]) == {1200.0}
