@@ -59,7 +59,7 @@ def stiffest(material: JointMaterial) -> float:
 def block_compliance(scene: Scene) -> float:
     """Share of the blocks in the compliance of columns of blocks and joints; k_n h / (k_n h + E) for one material each.
 
-    For several materials it is Σ A h / E over Σ A (h / E + 1 / k_n), summed over bed joints of area A with blocks of
+    For several materials it is Σ l h / E over Σ l (h / E + 1 / k_n), summed over bed joints of length l with blocks of
     height h on them, or over all joints if there are no bed joints. Blocks without a modulus are rigid; the share is
     zero if joints have no stiffness.
     """
@@ -72,9 +72,9 @@ def block_compliance(scene: Scene) -> float:
     normal[numbers] = [joint_stiffness(each).normal for each in materials]
     young = np.array([np.inf if each.young is None else each.young for each in scene.block_materials])
     low, high = scene.blocks.boxes
-    block, area = _upper(scene)[beds], (scene.joints.length * scene.thickness_of_joints)[beds]
-    softer = float(area @ ((high - low)[block, 1] / young[scene.material_of_block[block]]))
-    return softer / (softer + float(area @ (1 / normal[scene.material_of_joint[beds]])))
+    block, length = _upper(scene)[beds], scene.joints.length[beds]
+    softer = float(length @ ((high - low)[block, 1] / young[scene.material_of_block[block]]))
+    return softer / (softer + float(length @ (1 / normal[scene.material_of_joint[beds]])))
 
 
 def _beds(scene: Scene) -> Indices:

@@ -85,23 +85,6 @@ def test_beam_does_not_count_in_block_compliance() -> None:
     assert block_compliance(under) == pytest.approx(block_compliance(alone), rel=1e-12)
 
 
-def test_block_compliance_weighs_joints_by_area() -> None:
-    """A rigid course 0.4 m thick under a soft one of 0.1 m: each counts by the area of the joint below it."""
-    joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
-    wide = {"density": 2000.0, "young": 1e13, "thickness": 0.4}
-    wall = courses(
-        [[1, 1], [1, 1]],
-        height=0.2,
-        wall__thickness=0.1,
-        block__young=2e9,
-        materials={"wide": wide},
-        assign=[{"block": "wide", "blocks": [0, 1]}],
-        joint=joint,
-    )
-    softer = 0.4 * 0.2 / 1e13 + 0.1 * 0.2 / 2e9
-    assert block_compliance(wall) == pytest.approx(softer / (softer + 0.5 / 1e10))
-
-
 def test_block_compliance_counts_used_materials_only() -> None:
     """A Young's modulus that no block has requires no comparison; one that some blocks have does, in any table."""
     changes: dict[str, Any] = {"wall__thickness": 0.25, "joint": {"friction": 0.6}, "load__live": {"kind": "lateral"}}
