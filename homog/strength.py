@@ -35,7 +35,7 @@ class StrengthDomain:
     bond, joint
         Size of a block, and material of the joints.
     head
-        Material of the head joints, if it is not that of the bed joints. Those without mortar may be dry.
+        Material of the head joints; None is that of the bed joints. Open joints have ``JointMaterial(friction)``.
     """
 
     bond: Bond

@@ -54,8 +54,8 @@ def _write_msh(mesh: WallMesh, scene: Scene, name: str) -> None:
     interfaces, interface_group = mesh.interfaces[order], interface_group[order]
     n_triangles, n_interfaces = len(mesh.triangles), len(interfaces)
     data = {
-        name: np.concatenate([triangles, joints[order]])
-        for name, (triangles, joints) in element_data(mesh, scene).items()
+        title: np.concatenate([triangles, joints[order]])
+        for title, (triangles, joints) in element_data(mesh, scene).items()
     }
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
     node_group = _block_group(scene)[mesh.block]

@@ -56,6 +56,7 @@ class LoadSteps:
     steps: int = 0  # steps taken, on every path
     interrupted: bool = False  # whether Ctrl-C ended it
     far: bool = False  # whether it ended because a body, at rest, had moved beyond the largest displacement
+    excluded: float = 0.0  # largest multiplier at which the wall passed as at rest, although that was proved impossible
 
     @property
     def width(self) -> float:
@@ -76,6 +77,17 @@ class LoadSteps:
             self.fall_starts = rests if halfway is None else [halfway, *rests]
         if trial == self.upper:
             self.verdict, self.tried_from = "collapse", self.lower  # it fell there before, even if undecided now
+
+    def exclude_rests_above(self, bound: float) -> None:
+        """Take back rests under loads above `bound`, which no forces balance.
+
+        Under a load whose power on the mechanism is below the resolution of the criterion of rest, any wall passes as
+        at rest.
+        """
+        if self.lower is not None and self.lower > bound:
+            self.excluded = self.lower
+            self.rests = [(load, state) for load, state in self.rests if load <= bound]
+            self.lower, self.borne = self.rests[-1]
 
 
 @dataclass(frozen=True)

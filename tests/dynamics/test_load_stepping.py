@@ -11,14 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem.dynamic import dem_dynamic
+from dem.dynamic import dem_dynamic, quasi_static_run
 from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
 from runningbond.dynamics import U_CRIT, Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps, settle
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.controls import ramp
 from runningbond.dynamics.growth import FASTER, LOOKS, Growth
-from runningbond.dynamics.load_stepping import RESOLVED
+from runningbond.dynamics.load_stepping import RESOLVED, smallest_width
 from runningbond.limit import limit
 from runningbond.scene import Array, Scene, read_scene
 from tests.fem_interface.walls import MORTAR
@@ -83,21 +83,38 @@ def test_message_names_unrestrained_block_that_drifts_away() -> None:
     assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
 
 
-def test_rests_under_loads_proved_too_large_are_not_reported() -> None:
+@pytest.mark.parametrize("height", [0.02, 0.002])
+def test_rests_under_loads_proved_too_large_are_not_reported(height: float) -> None:
     """A weightless slab without tensile strength tips under any load at its upper corner; small ones do not show."""
     scene = courses(
         [[1]],
         width=1.0,
-        height=0.02,
+        height=height,
         joint={"friction": 0.5, "cohesion": 1.0, "tensile_strength": 0.0, "mortar": MORTAR},
-        load={"gravity": 0.0, "live": {"kind": "point", "at": [0.0, 0.02], "force": [1.0, 0.0]}},
+        load={"gravity": 0.0, "live": {"kind": "point", "at": [0.0, height], "force": [1.0, 0.0]}},
     )
     assert limit(scene).upper == pytest.approx(0.0, abs=1e-12)
+    resolved = smallest_width(quasi_static_run(scene), Criteria(collapse=1.0)) * (1 + 1e-9)
     outcome = dem_dynamic(scene, 0.5, budget=10_000)
     assert outcome.status == "undecided"
     assert outcome.multiplier is None
-    assert outcome.lower == 0.0
+    assert outcome.lower is not None
+    assert outcome.lower <= resolved
+    assert outcome.curve[outcome.curve[:, 1] > resolved, 1].size <= (outcome.upper is not None)
     assert outcome.message.startswith("it passed as at rest up to ")
+
+
+@pytest.mark.parametrize(("bound", "lower"), [(0.0, 0.0), (0.15, 0.1), (0.2, 0.2), (1.0, 0.3)])
+def test_rests_above_a_bound_are_taken_back(bound: float, lower: float) -> None:
+    """The largest rest that the bound allows is the lower end; the collapse is as it was."""
+    found = LoadSteps(upper=0.4)
+    for load in (0.0, 0.1, 0.2, 0.3):
+        found.add(load, State.at_rest(BLOCK.system), "stable", None)
+    found.exclude_rests_above(bound)
+    assert found.lower == lower == found.rests[-1][0]
+    assert found.borne is found.rests[-1][1]
+    assert found.excluded == (0.3 if lower < 0.3 else 0.0)
+    assert found.upper == 0.4
 
 
 def test_weightless_wall_carries_suddenly_applied_loads() -> None:

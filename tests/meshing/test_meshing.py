@@ -388,6 +388,7 @@ def test_invalid_cells_are_refused(cells: int, fault: str) -> None:
 # --- files ---------------------------------------------------------------------------------------------------
 
 KINDS = ("triangle", "quad")
+STIFFNESS = {"normal_stiffness": 2e9, "shear_stiffness": 1e9}
 WRITTEN = ("panel", "fixed first course", "off the lattice", "cracked", "one block")
 
 
@@ -449,12 +450,13 @@ def test_written_mesh_is_read_by_meshio(name: str, suffix: str, tmp_path: Path) 
 
 @pytest.mark.parametrize("suffix", [".msh", ".vtu"])
 def test_written_elements_have_the_parameters_of_their_materials(suffix: str, tmp_path: Path) -> None:
-    """Thickness times area times density is the wall's mass, a lintel is stiffer, and mortar has its stiffness."""
+    """Thickness times area times density is the wall's mass; dry heads differ from beds in mortar, oak from stone."""
     scene = courses(
         [[1, 1], [0.5, 1, 0.5]],
         block={"density": 1800.0, "young": 5e9, "poisson": 0.2},
         materials={"oak": {"density": 700.0, "thickness": 0.3}},
-        assign=[{"block": "oak", "blocks": [3]}],
+        joints={"dry": {"friction": 0.4, **STIFFNESS}},
+        assign=[{"block": "oak", "blocks": [2, 3]}, {"joint": "dry", "orientation": "head"}],
         joint={"friction": 0.6, "cohesion": 1200.0, "mortar": {"young": 1e9, "poisson": 0.0, "thickness": 0.01}},
     )
     path, mesh = tmp_path / f"wall{suffix}", wall_mesh(scene)
@@ -463,19 +465,27 @@ def test_written_elements_have_the_parameters_of_their_materials(suffix: str, tm
     of_triangles, of_joints = ({name: data[kind] for name, data in read.cell_data_dict.items()} for kind in KINDS)
     area = np.abs(np.linalg.det(read.points[read.cells_dict["triangle"]] + (0.0, 0.0, 1.0))) / 2
     mass = of_triangles["thickness"] * area * of_triangles["density"]
-    oak, ground = of_triangles["block"] == 3, ~scene.wall[of_triangles["block"].astype(int)]
-    assert mass[oak].sum() == pytest.approx(0.4 * 0.175 * 0.3 * 700)
+    oak, ground = np.isin(of_triangles["block"], (2, 3)), ~scene.wall[of_triangles["block"].astype(int)]
+    assert mass[oak].sum() == pytest.approx(0.6 * 0.175 * 0.3 * 700)
     assert mass[~ground].sum() == pytest.approx(scene.mass[scene.wall].sum())
     assert set(of_triangles["young"][~oak & ~ground]) == {5e9}
     assert not of_triangles["young"][oak | ground].any()
     assert not of_triangles["density"][ground].any()
     assert set(of_triangles["poisson"][~oak & ~ground]) == {0.2}
-    assert set(of_joints["friction"]) == {0.6}
-    assert set(of_joints["cohesion"]) == {1200.0}
-    assert of_joints["tensile_strength"] == pytest.approx(2000.0)
-    assert set(of_joints["normal_stiffness"]) == {1e11}
-    assert set(of_joints["shear_stiffness"]) == {5e10}
-    assert set(of_joints["thickness"]) == {scene.thickness}  # oak is the thicker one of any two
+    joint = of_joints["joint"].astype(int)
+    head = ~scene.joints.is_bed[joint]
+    expected = {
+        "friction": (0.4, 0.6),
+        "cohesion": (0.0, 1200.0),
+        "tensile_strength": (0.0, 2000.0),
+        "normal_stiffness": (2e9, 1e11),
+        "shear_stiffness": (1e9, 5e10),
+    }
+    for name, (of_heads, of_beds) in expected.items():
+        assert of_joints[name] == pytest.approx(np.where(head, of_heads, of_beds))
+    both_of_oak = np.isin(scene.joints.block[joint], (2, 3)).all(axis=1)
+    assert both_of_oak.any()
+    assert of_joints["thickness"] == pytest.approx(np.where(both_of_oak, 0.3, scene.thickness))
     assert not any(of_triangles[name].any() for name in ("friction", "cohesion", "normal_stiffness"))
     assert not any(of_joints[name].any() for name in ("density", "young", "poisson"))
 
