@@ -170,7 +170,7 @@ def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
     if _is_pushed_left(wall):
         wall = replace(wall, curve=-curve, is_turned=True)
-    return wall if peaks else replace(wall, peaks=_peaks(wall))
+    return replace(wall, peaks=_peaks(wall, *printed))
 
 
 def _check_picture(path: Path) -> None:
@@ -187,15 +187,18 @@ def _is_pushed_left(wall: MeasuredWall) -> bool:
     return left * SWING > right or (left > right and not wall.is_cyclic)
 
 
-def _peaks(wall: MeasuredWall) -> tuple[float, ...]:
-    """Largest forces of a curve to both sides, or only to the side to which the wall was pushed."""
-    if not len(wall.curve):
-        return ()
-    forces = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
-    if not wall.is_cyclic:
-        return forces[:1]
-    least = SWING * max(wall.reach)
-    return tuple(force for force, far in zip(forces, wall.reach, strict=True) if far > least and force > 0)
+def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -> tuple[float, ...]:
+    """Largest forces to the sides to which a wall was pushed: as its table has them, else as its curve has them."""
+    recorded: tuple[float | None, ...] = (None, None)
+    if len(wall.curve):
+        forces = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
+        least = SWING * max(wall.reach)
+        pushed = zip(forces, wall.reach, strict=True)
+        recorded = tuple(force if far > least and force > 0 else None for force, far in pushed)
+    printed = (negative, positive) if wall.is_turned else (positive, negative)
+    known = [one if one is not None else other for one, other in zip(printed, recorded, strict=True)]
+    found = tuple(value for value in known if value is not None)
+    return found if wall.is_cyclic else found[:1]
 
 
 def read_curve(path: Path) -> Array:

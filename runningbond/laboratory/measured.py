@@ -19,6 +19,9 @@ TWO_SIDED = 0.2
 LARGER = 1.1
 """Ratio of amplitudes up to which a cycle repeats an earlier one, and is left out of a prediction."""
 
+FARTHER = 1.02
+"""The same ratio for the largest cycle of all, which a prediction follows to where the test ended."""
+
 CYCLIC, MONOTONIC = "cycl", "monoton"
 """Parts of the word by which a table describes the loading."""
 
@@ -88,6 +91,11 @@ class MeasuredWall:
         return float(np.mean(self.peaks)) if self.peaks else None
 
     @property
+    def side(self) -> float:
+        """Side to which it was pushed first: 1, or -1 for the negative one."""
+        return -1.0 if self.path and self.path[0] < 0 else 1.0
+
+    @property
     def path(self) -> tuple[float, ...]:
         """Displacements [m] to which the actuator was moved one after the other; empty without a curve."""
         moved = self.curve[~np.isnan(self.curve[:, 0]), 0]
@@ -115,12 +123,13 @@ def turning_points(moved: Array) -> list[float]:
 def growing(turns: list[float]) -> tuple[float, ...]:
     """The first of several cycles of one size: turning points farther than any before, and the next one after each.
 
-    If the turns between two on the same side were left out, the second one replaces the first. If the record continues,
+    Farther is `LARGER` times as far; the farthest of all turns need only be `FARTHER`. If the turns between two on the same side were left out, the second one replaces the first. If the record continues,
     the last turn is followed by the unloading, at most to zero displacement, which closes the largest loop.
     """
     kept, last, farthest, owed = list[float](), -1, 0.0, False
+    most = max(map(abs, turns), default=0.0)
     for k, turn in enumerate(turns):
-        grows = abs(turn) > LARGER * farthest
+        grows = abs(turn) > (FARTHER if abs(turn) == most else LARGER) * farthest
         if grows or owed:
             if kept and (k - last) % 2 == 0:
                 kept.pop()

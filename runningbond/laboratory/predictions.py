@@ -76,7 +76,7 @@ class Prediction:
     @cached_property
     def marks(self) -> Marks | None:
         """Values read from its curve."""
-        return marks_of(self.curve, cyclic=self.wall.is_cyclic) if self.is_answer else None
+        return marks_of(self.curve, cyclic=self.wall.is_cyclic, side=self.wall.side) if self.is_answer else None
 
     @property
     def strength(self) -> float | None:
@@ -109,7 +109,7 @@ class Prediction:
 
     def row(self) -> dict[str, Any]:
         """Its scores, under the names that the command line prints."""
-        test = marks_of(self.wall.curve, cyclic=self.wall.is_cyclic)
+        test = marks_of(self.wall.curve, cyclic=self.wall.is_cyclic, side=self.wall.side)
         own, outcome = self.marks, self.outcome
         over = {
             name: ratio(getattr(own, key, None), getattr(test, key, None))

@@ -14,7 +14,7 @@ import numpy as np
 from runningbond.dynamics.lead import LOSS
 from runningbond.scene import Array
 
-from .measured import LARGER, SWING, turning_points
+from .measured import LARGER, SWING
 
 SECANT = 0.3
 """Share of the strength at which the secant stiffness is read."""
@@ -61,11 +61,14 @@ class Loop(NamedTuple):
     work: float
 
 
-def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
-    """Values that can be read from a curve; None if there is no curve, or no force along it."""
+def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
+    """Values that can be read from a curve; None if there is no curve, or no force along it.
+
+    A curve to both sides is read from the side to which the test is pushed first, 1 or -1: the same for a record and
+    for its predictions, whose first cycle may be too small to be seen in one of them.
+    """
+    curve = curve * side if cyclic else curve
     known = curve[~np.isnan(curve).any(axis=1)]
-    if cyclic and _starts_left(known):
-        curve, known = -curve, -known
     if len(known) < 2 or known[:, 1].max() <= 0:
         return None
     sides = _pushed(backbone(known), backbone(-known)) if cyclic else [_onward(_from_rest(known))]
@@ -74,7 +77,7 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
         return None
     strength = float(np.mean(peaks))
     force = SECANT * strength
-    reach = swing(known, force) if cyclic else first_crossing(sides[0], force)
+    reach = _first_swing(curve, force) if cyclic else first_crossing(sides[0], force)
     stiffness = (2 if cyclic else 1) * force / reach if reach is not None and reach > 0 else None
     side = sides[0]
     top = int(side[:, 1].argmax())
@@ -103,11 +106,6 @@ def _onward(curve: Array) -> Array:
     """A one-sided curve without its unloading and reloading."""
     moved = curve[:, 0]
     return np.asarray(curve[moved >= np.maximum.accumulate(moved) - UNLOADED * moved.max()])
-
-
-def _starts_left(curve: Array) -> bool:
-    """Whether the first turning point of a record is on the negative side."""
-    return bool(len(curve)) and turning_points(curve[:, 0])[0] < 0
 
 
 def backbone(curve: Array) -> Array:
@@ -144,6 +142,12 @@ def swing(curve: Array, force: float) -> float | None:
             x = x0 + (x1 - x0) * (-start[0] * force - y0) / (y1 - y0)
             return float(abs(x - start[1]))
     return None
+
+
+def _first_swing(curve: Array, force: float) -> float | None:
+    """`swing` of the first stretch of a record that has one: a branch does not continue across what was not recorded."""
+    swings = (swing(part, force) for part in _parts(curve))
+    return next((reach for reach in swings if reach is not None), None)
 
 
 def loops(curve: Array) -> list[Loop]:

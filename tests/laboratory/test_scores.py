@@ -62,7 +62,7 @@ def test_secant_is_between_two_points_of_the_curve_at_three_tenths() -> None:
 def test_record_to_the_left_first_is_mirrored() -> None:
     points = [(0, 0), (1, 6), (2, 9), (0, -1), (-2, -7), (0, 1), (5, 12), (0, -2), (-5, -9), (0, 2), (10, 13.5)]
     record = curve(*points, (0, -3), (-10, -10), (0, 0))
-    right, left = (marks_of(sign * record, cyclic=True) for sign in (1, -1))
+    right, left = (marks_of(sign * record, cyclic=True, side=sign) for sign in (1.0, -1.0))
     assert right is not None
     assert right == left
     assert right.at_peak == 10
@@ -167,6 +167,32 @@ def test_hand_formulas_report_that_they_ignore_ties() -> None:
     without, tied = (formula(scene_from_dict(tables | extra), 0.01, what="rocking") for extra in ({}, {"tie": [tie]}))
     assert tied.multiplier == without.multiplier
     assert (without.message, tied.message) == ("worked out by hand", "worked out by hand, without its ties")
+
+
+def test_prediction_is_read_from_the_side_of_its_test() -> None:
+    """A test to -1, 42, -60 m that its prediction follows from rest: 1 m is 2 % of half the range, too little to see.
+
+    The sides differ, with peaks at 10 and -60 m; the record starts at 3 m, from where its first turn is to be seen.
+    """
+    record = curve((3, 0), (-1, -5), (10, 50), (42, 40), (-60, -70), (0, 0))
+    wall = replace(WALLS["WS1.175"], curve=record)
+    assert (wall.path[0], wall.side) == (-1, -1.0)
+    rung = find_rungs("rigid")[0]
+    followed = Outcome("WS1.175", "rigid", "collapse", 1.0, curve=-record[1:])  # positive is its first push
+    own = Prediction(wall, rung, scene_of(wall, rung.features), followed)
+    mine, test = own.marks, marks_of(record, cyclic=True, side=wall.side)
+    assert mine is not None
+    assert test is not None
+    assert (mine.at_peak, test.at_peak) == (60, 60)
+    assert own.row()["peak_displacement_ratio"] == 1.0
+
+
+def test_stiffness_is_not_read_across_a_gap_of_the_record() -> None:
+    """A spring of 10 N/m; the record goes on at the other side 2 m nearer, which would make it a third too stiff."""
+    points = [(0, 0), (3, 30), (2, 20), (np.nan, np.nan), (0, -20), (-1, -30), (4, 20), (6, 40)]
+    marks = marks_of(curve(*points), cyclic=True)
+    assert marks is not None
+    assert marks.stiffness == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize("end", [0.0, 1e-17, -1e-17])
