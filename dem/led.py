@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import LITTLE, formed, goes_both_ways, shedding
+from runningbond.dynamics.lead import LITTLE, formed, goes_both_ways, growth_left, shedding
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
@@ -181,7 +181,11 @@ def _judge(
     supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
     if lead.settles and not run.fell and supports.have_come_free(last.force, last.pull):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
-    ends = run.fell or formed(outcome.curve, tolerance, settles=lead.settles, least=_least(lead))
+    left = 0.0 if lead.settles or run.fell else growth_left(outcome.curve)
+    if lead.settles:
+        ends = run.fell or formed(outcome.curve, tolerance)
+    else:
+        ends, upper = left <= tolerance * max(upper, _least(lead)), upper + left
     if ends and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
         fall = f"; the wall falls at {at}, and the answer is that of its last rest" if run.fell else ""
         return replace(

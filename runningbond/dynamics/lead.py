@@ -28,6 +28,9 @@ STRIDE = 10
 STAGES = 20
 """Number of rests in each leg of the path of a settlement."""
 
+FALL_PART = 0.003
+"""Largest distance between the last rest of a settlement and its fall, relative to the settlement at the fall."""
+
 SUPPORT_WINDOW_STEPS = 25
 """Least time steps between two changes of the speed of supports: each change is a shock that loosens friction."""
 
@@ -36,7 +39,10 @@ LOSS = 0.8
 """Fraction of the largest force: once the force has fallen to it the wall has failed, and its mechanism is drawn."""
 
 FINAL_PART = 0.1
-"""Last part of a path, over which the force no longer changes if a mechanism has formed."""
+"""Last part of a path, over which a share no longer changes, and a force no longer grows, if a mechanism has formed."""
+
+STRAIGHT = 2.0
+"""What is left to grow on twice the path, relative to the growth over its last half, if a force grows along a line."""
 
 UNCHANGED = 1e-6
 """Change of the share on a support that counts as none, in addition to the tolerance times its total change."""
@@ -90,6 +96,7 @@ class Traverse:
     gone: float = 0.0  # sum over the rows of a push of how far the farthest blocks moved [m]
     elsewhere: tuple[Indices, Array, Array] | None = None  # where displacements are read if the control point stays
     lasting: float = 0.0  # largest mean force over a whole row during motion
+    fall: tuple[float, float] | None = None  # settlements [m] of the last rest and of a fall
     resolved: bool = True  # whether means over shorter and shorter windows add almost nothing to the answer
 
     @property
@@ -212,7 +219,9 @@ class Lead:
     def go(self, traverse: Traverse, speed: float) -> State:
         """Traverse the path at a largest speed [m/s, or settlements/s]; return the state at its end."""
         state = self.start.copy()
-        (self._settle if self.settles else self._drive)(traverse, state, speed)
+        if self.settles:
+            return self._settle(traverse, state, speed)
+        self._drive(traverse, state, speed)
         return state
 
     def after(self, traverse: Traverse) -> "Lead":
@@ -243,10 +252,12 @@ class Lead:
         """Advice if the answers of a curve ``(n, 2)`` at two speeds differ; may be empty."""
         return ""
 
-    def fall(self, curve: Array) -> str:
-        """Note on how a wall has fallen at the end of its curve ``(n, 2)``."""
-        if self.settles:
-            return f"the wall falls beyond {abs(curve[-1, 0]):.4g} m, and the answer is that of its last rest"
+    def fall(self, traverse: Traverse) -> str:
+        """Note on how a wall has fallen at the end of a traverse."""
+        curve = traverse.curve
+        if traverse.fall is not None:
+            between = "the wall falls between {:.4g} and {:.4g} m".format(*traverse.fall)
+            return f"{between}, and the answer is that of its last rest"
         return f"the wall falls beyond {np.abs(curve[:, 0]).max():.4g} m"
 
     def crushed(self, state: State) -> Array:
@@ -350,37 +361,70 @@ class Lead:
         """Displacement of the driven point since the rest under the dead load [m]."""
         return self.run.driven(state) - self.run.driven(self.start)
 
-    def _settle(self, traverse: Traverse, state: State, speed: float) -> None:
+    def _settle(self, traverse: Traverse, state: State, speed: float) -> State:
         run, given = self.run, self.run.given(state)
-        motion, far, _ = run.system.carried
+        far = run.system.carried[1]
         self.note(traverse, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
         self.observe(run, state, traverse.rows[-1].force)
-        rows = 2 * RAMP
-        stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
-        windows = windows_of_stage(stage)
-        pace = _pace(rows, windows).ravel()
-        steps = max(1, round(stage / len(pace)))
+        traverse.best = state.copy()
         # Small steps at the start of each leg, where reactions change most.
         shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
-        stages = [0.0, *(at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:])]
-        for number, (before, settled) in enumerate(pairwise(stages), start=2):
-            top = (settled - before) / (run.dt * steps * pace.sum())
-            moving = [self.share(state, top * part, steps, given) for part in pace.tolist()]
-            state.velocity[motion != 0] = 0.0
-            rest = self.criteria.rest if number == len(stages) else NEARLY_AT_REST
-            traverse.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
-            fell = traverse.verdict != "stable"
-            # For a fall at finite displacements the last rest is shown, because blocks may have turned by any angle.
-            if not fell or run.system.contacts is None:
+        stages = [at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:]]
+        before, fall, ahead = 0.0, None, stages[::-1]
+        while ahead:
+            settled = ahead.pop()
+            exactly = fall is not None or settled == stages[-1]
+            moving = self._stage(traverse, state, speed, settled - before, given, exactly=exactly)
+            # Of a fall at small displacements the motion is shown; at finite ones blocks may have turned by any angle.
+            stands, small = traverse.verdict == "stable", run.system.contacts is None
+            if (fall is None or not small) if stands else small:
                 traverse.motion, traverse.crushed = state.motion - self.start.motion, self.crushed(state)
-            if fell:
-                return
-            bears = self.share(state, 0.0, self.criteria.interval, given)
-            # Close to the end supports barely move. What changes as they stop is friction that the motion has loosened.
-            traverse.unseen = traverse.inertia = abs(bears - float(np.mean(moving[-max(1, windows // 4) :])))
-            self.note(traverse, state, far * settled, bears)
-            traverse.best = state.copy()
-            self.observe(run, state, bears)
+            if stands:
+                bears = self.share(state, 0.0, self.criteria.interval, given)
+                # Close to the end supports barely move. What changes as they stop is friction that motion has loosened.
+                # Up to a fall the share may go on changing in the same sense.
+                loosened, since = abs(bears - moving), 0.0 if fall is None else bears - traverse.rows[-1].force
+                traverse.unseen, traverse.inertia = max(loosened, since), max(loosened, -since)
+                self.note(traverse, state, far * settled, bears)
+                traverse.best, before = state.copy(), settled
+                self.observe(run, state, bears)
+            else:  # the energy in the rubble of a fall is not judged
+                state = replace(traverse.best.copy(), steps=state.steps)
+                if traverse.verdict == "undecided":
+                    break
+                fall = settled
+            if fall is not None:
+                near = FALL_PART * max(abs(fall), FALL_PART * self.longest)
+                ahead = [(before + fall) / 2] if abs(fall - before) > near else []
+        if fall is not None:
+            traverse.verdict, traverse.fall = "collapse", (abs(far * before), abs(far * fall))
+        return state
+
+    def _stage(
+        self, traverse: Traverse, state: State, speed: float, by: float, given: float, *, exactly: bool
+    ) -> float:
+        """Move supports by a fraction of the settlement and hold them until the wall rests or falls, in place.
+
+        Return the mean share that supports carry towards the end of their motion.
+        """
+        run, motion, rows = self.run, self.run.system.carried.motion, 2 * RAMP
+        stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
+        windows = windows_of_stage(stage)
+        pace = _pace(rows, windows)
+        steps = max(1, round(stage / pace.size))
+        top, moving, seen = by / (run.dt * steps * pace.sum()), list[float](), state.steps
+        for part in pace.ravel().tolist():
+            moving.append(self.share(state, top * part, steps, given))
+            if state.steps - seen >= self.criteria.interval:
+                seen = state.steps
+                if self.falls(state):
+                    traverse.verdict = "collapse"
+                    break
+        else:
+            state.velocity[motion != 0] = 0.0
+            rest = self.criteria.rest if exactly else NEARLY_AT_REST
+            traverse.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
+        return float(np.mean(moving[-max(1, windows // 4) :]))
 
 
 def windows_of_stage(steps: float) -> int:
@@ -405,28 +449,39 @@ def last_leg(curve: Array) -> Array:
     return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
 
 
-def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0, still: float = 0.0) -> bool:
-    """Whether a mechanism has formed: the force no longer grows, or the share no longer changes, at the end of a path.
+def growth_left(curve: Array) -> float:
+    """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved on.
+
+    Of elastic joints the force approaches that of a mechanism more and more slowly: by each doubling of the path, its
+    growth falls by the same factor, or on a straight line doubles. This is read from the last two doublings; nothing is
+    left if the force has not grown over `FINAL_PART`.
+    """
+    value, force = curve[np.argsort(curve[:, 0], kind="stable")].T
+    places = np.array([0.25, 0.5, 1 - FINAL_PART, 1.0]) * value[-1]
+    quarter, half, late, end = np.interp(places, value, np.maximum.accumulate(force)).tolist()
+    if end <= late:
+        return 0.0
+    growth, before = end - half, half - quarter
+    return float(growth * (STRAIGHT if 3 * growth >= 2 * before else growth / (before - growth)))
+
+
+def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:
+    """Whether a mechanism has formed under a settling support: its share no longer changes at the end of a path.
 
     Parameters
     ----------
     curve : (n, 2) float
-        Displacement and force, or share of the dead load.
+        Displacement, and share of the dead load.
     tolerance
-        Fraction of the force by which it may still grow; and of its total change by which a share may still change.
-    settles
-        Whether supports settle. An elastic wall sheds load too: almost none on a short path, and evenly along it.
-    least
-        Force below which growth need not be small.
+        Fraction of its total change by which a share may still change. An elastic wall sheds load too: almost none on a
+        short path, and evenly along it.
     still
         Change of a share that motion may have caused, which counts as none: it may be all the change there was.
     """
-    value, force = (last_leg(curve) if settles else curve).T
+    value, share = last_leg(curve).T
     late = value >= (1 - FINAL_PART) * value.max()
-    if settles:
-        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + max(still, UNCHANGED))
-    most = float(force[late].max())
-    return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, least)
+    least = max(still, UNCHANGED)
+    return bool(np.ptp(share[late]) <= min(tolerance, FINAL_PART / 2) * np.ptp(share) + least)
 
 
 def shedding(curve: Array) -> tuple[bool, str]:

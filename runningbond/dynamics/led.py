@@ -21,7 +21,7 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, shedding
+from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, growth_left, shedding
 from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
@@ -29,6 +29,9 @@ LEAST_STEPS, REST_MULTIPLE, REST_MULTIPLE_FINITE = 20_000, 20, 2
 """Fewest time steps of the longest leg in the first traverse if no rate is given, and their least multiple of the steps
 to rest under the dead load: at small displacements, and at finite ones, whose paths are longer.
 """
+
+FALL_MULTIPLE = 2
+"""How many more steps supports take that move at finite displacements: shaken blocks slide a little, and fall early."""
 
 LOCKED = 20.0
 """Largest ratio of live force to weight of a block (weightless: to the strength of the strongest joint point) up to
@@ -102,6 +105,9 @@ def collapse_of_led(
     outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
+    falls = [each.fall for each in traverses[-2:] if each.fall is not None]
+    if traverse.fall is not None:
+        traverse.fall = min(rest for rest, _ in falls), max(fall for _, fall in falls)
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(traverse.best)))
     if outcome.status == "undecided" and outcome.upper is None and not lead.settles and self_locking():
@@ -134,6 +140,8 @@ def _durations(lead: Lead, rest: int) -> list[float]:
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
     unhurried = REST_MULTIPLE if lead.run.system.contacts is None else REST_MULTIPLE_FINITE
     steps = max(LEAST_STEPS, unhurried * rest)
+    if lead.settles and lead.run.system.contacts is not None:
+        steps *= FALL_MULTIPLE
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [steps * lead.run.dt * 2**k for k in range(runs)]
 
@@ -161,10 +169,27 @@ def _spread(lead: Lead, traverses: list[Traverse]) -> float:
     return (upper - lower) / max(-lower, upper, lead.least) if upper > lower else 0.0
 
 
+def _left(lead: Lead, traverse: Traverse) -> float:
+    """Force [N] by which the answer of a drive or push may grow beyond the end of its path."""
+    return 0.0 if lead.settles or traverse.verdict == "collapse" else growth_left(lead.onward(traverse.curve))
+
+
 def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
-    """Whether half the speed would change the answer, and what else is reported, by less than the tolerance."""
+    """Whether half the speed would change the answer, and what else is reported, by less than the tolerance.
+
+    If a wall falls off its supports at the same settlement at both speeds, its share may change up to there by more.
+    """
+    if len(traverses) > 1 and any(traverse.fall for traverse in traverses[-2:]):
+        return _fall_alike(*traverses[-2:], tolerance)
     ended = all(traverse.verdict != "undecided" for traverse in traverses[-2:])
     return ended and _spread(lead, traverses) <= tolerance and lead.apart(*traverses[-2:]) <= tolerance
+
+
+def _fall_alike(fast: Traverse, slow: Traverse, tolerance: float) -> bool:
+    """Whether a wall falls at the same settlement at both speeds, to a tolerance."""
+    if fast.fall is None or slow.fall is None:
+        return False
+    return max(fast.fall[0], slow.fall[0]) <= (1 + tolerance) * min(fast.fall[1], slow.fall[1])
 
 
 def _arrays(outcome: Outcome, lead: Lead, traverse: Traverse, point_order: Indices) -> Outcome:
@@ -224,10 +249,14 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     fell = traverse.verdict == "collapse"
     if lead.settles and not fell and _has_come_free(lead, traverse.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
-    outcome = replace(outcome, lower=least, upper=most)
-    if not fell and not formed(
-        lead.onward(outcome.curve), tolerance, settles=lead.settles, still=traverse.answer - least
-    ):
+    left, spread = _left(lead, traverse), _spread(lead, traverses)
+    outcome = replace(outcome, lower=least, upper=most + left)
+    if lead.settles:
+        ends = fell or formed(outcome.curve, tolerance, still=traverse.answer - least)
+    else:
+        room = tolerance - spread if spread <= tolerance else tolerance
+        ends = left <= room * max(traverse.answer, lead.least)
+    if not ends:
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
         still = f"{still} at the displacement asked for, {at}"
@@ -236,8 +265,10 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         message = f"no answer: {still}: {number(traverse.answer)}; {what}"
         bounds = (None, most) if falls else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
-    if _spread(lead, traverses) > tolerance and not _rate(lead.scene):
+    if spread > tolerance and not _rate(lead.scene):
         why = joined("another speed changes it by more than the tolerance", lead.remedy(outcome.curve))
+        if traverse.fall is not None:
+            why = "{}, up to which it changes by more than the tolerance".format(lead.fall(traverse).partition(",")[0])
         return replace(outcome, message=f"no answer: {why}; {what}")
-    fall = f"; {lead.fall(outcome.curve)}" if fell else ""
+    fall = f"; {lead.fall(traverse)}" if fell else ""
     return replace(outcome, status="collapse", multiplier=traverse.answer, message=what + fall)

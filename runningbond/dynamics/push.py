@@ -207,11 +207,11 @@ class Push(Lead):
             return ""
         return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
 
-    def fall(self, curve: Array) -> str:
-        """Note on how a wall has fallen at the end of its curve ``(n, 2)``."""
-        (before, above), (after, below) = curve[-2:].tolist()
+    def fall(self, traverse: Traverse) -> str:
+        """Note on how a wall has fallen at the end of a traverse."""
+        (before, above), (after, below) = traverse.curve[-2:].tolist()
         if below > 0:
-            return super().fall(curve)
+            return super().fall(traverse)
         brink = before + (after - before) * above / (above - below)
         if abs(brink) < RELAXATION_PART * self.distance:
             return "the multiplier falls to nothing while the control point stays where it is"

@@ -123,8 +123,9 @@ def turning_points(moved: Array) -> list[float]:
 def growing(turns: list[float]) -> tuple[float, ...]:
     """The first of several cycles of one size: turning points farther than any before, and the next one after each.
 
-    Farther is `LARGER` times as far; the farthest of all turns need only be `FARTHER`. If the turns between two on the same side were left out, the second one replaces the first. If the record continues,
-    the last turn is followed by the unloading, at most to zero displacement, which closes the largest loop.
+    Farther is `LARGER` times as far; the farthest of all turns need only be `FARTHER`. If the turns between two on the
+    same side were left out, the second one replaces the first. If the record continues, the last turn is followed by
+    the unloading, at most to zero displacement, which closes the largest loop.
     """
     kept, last, farthest, owed = list[float](), -1, 0.0, False
     most = max(map(abs, turns), default=0.0)

@@ -79,16 +79,16 @@ def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
     force = SECANT * strength
     reach = _first_swing(curve, force) if cyclic else first_crossing(sides[0], force)
     stiffness = (2 if cyclic else 1) * force / reach if reach is not None and reach > 0 else None
-    side = sides[0]
-    top = int(side[:, 1].argmax())
-    after, borne = side[top:], LOSS * float(side[top, 1])
+    first = sides[0]
+    top = int(first[:, 1].argmax())
+    after, borne = first[top:], LOSS * float(first[top, 1])
     if cyclic:  # reloading may pass below the envelope
         after = after[int(np.flatnonzero(after[:, 1] >= borne)[-1]) :]
     else:  # without unloading, which reduces the force as the displacement goes back, even by noise
         after = after[after[:, 0] >= np.maximum.accumulate(after[:, 0])]
     loss = first_crossing(after * (1, -1), -borne)
     both = (tuple(loops(curve)), residual(curve)) if cyclic else ((), None)
-    return Marks(strength, stiffness, float(side[top, 0]), loss, *both)
+    return Marks(strength, stiffness, float(first[top, 0]), loss, *both)
 
 
 def _pushed(*sides: Array) -> list[Array]:
@@ -145,7 +145,7 @@ def swing(curve: Array, force: float) -> float | None:
 
 
 def _first_swing(curve: Array, force: float) -> float | None:
-    """`swing` of the first stretch of a record that has one: a branch does not continue across what was not recorded."""
+    """`swing` of the first stretch of a record that has one: branches do not continue across what was not recorded."""
     swings = (swing(part, force) for part in _parts(curve))
     return next((reach for reach in swings if reach is not None), None)
 

@@ -33,11 +33,16 @@ TOUCHING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Proof that a wall can collapse: scaled mechanism ``(nd,)``, and forces at its smallest and largest known load."""
+    """Proof that a wall can collapse: scaled mechanism ``(nd,)``, and forces at its smallest and largest known load.
+
+    A wedged wall may be pressed together by any force, and then collapse at any larger load as well: it is `endless`,
+    and its smallest load stands for the largest, which does not exist.
+    """
 
     motion: Array
     least: ForceSolution
     most: ForceSolution
+    endless: bool = False
 
 
 def least_multiplier(certificate: Certificate) -> float:
@@ -77,7 +82,7 @@ def certify(
 ) -> Certificate | None:
     """Find the smallest and largest load that drive a mechanism; None if there are none.
 
-    If the largest load is unbounded, the smallest is taken for both. `extreme` finds the forces for the aims
+    `extreme` finds the forces for the aims
     ``smallest`` and ``largest``, which are as exact as its results; without `extreme` they are proved.
     """
     forces = driving_forces(system, motion)
@@ -89,7 +94,7 @@ def certify(
         return None
     most = find(forces, "largest")
     if most is not None and most.status == "unbounded":
-        return Certificate(motion, least, least)
+        return Certificate(motion, least, least, endless=True)
     return Certificate(motion, least, most) if most is not None and most.status == "optimal" else None
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 from runningbond.results import Outcome, collapse_state
+from runningbond.results.outcome import number
 from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
 
 from .associated import LimitState, arrays_of, dead_load_fall, judge, limit_state, remarks, so_far, uses_cut_strength
@@ -126,6 +127,9 @@ def _collapse(
     lowest, highest = proved[0], max(proved, key=lambda each: each.most.multiplier)
     least, multiplier, far = lowest.least, cut.load(lowest.least.multiplier), cut.load(highest.most.multiplier)
     message = _message(loads, result, tolerance, falling=cut.has_support)
+    if endless := next((each for each in proved if each.endless), None):
+        least_of_it, others = number(cut.load(endless.least.multiplier)), "smaller" if cut.has_support else "larger"
+        message += f"; at every load {others} than {least_of_it} as well, if joints are pressed together by more"
     if cut.has_support:
         message = f"{message}; {reaction_note(cut.scene, multiplier)}"
     arrays = arrays_of(cut, lowest.motion, least)

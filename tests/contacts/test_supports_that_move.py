@@ -1,6 +1,7 @@
 """Supports that move so far that the walls on them change their shape, against exact solutions."""
 
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -69,6 +70,35 @@ def far(scene: Scene, model: Any = dem_dynamic) -> Outcome:
     return outcome
 
 
+def fall_interval(outcome: Outcome) -> Array:
+    """Settlements [m] of the last rest and of the fall ``(2,)``, as the message has them."""
+    found = re.search(r"falls between (\S+) and (\S+) m", outcome.message)
+    assert found is not None, outcome.message
+    return np.array([float(found[1]), float(found[2])])
+
+
+def voussoirs(spread: float) -> Scene:
+    """Half a ring of 11 voussoirs on two grounds, of which the right one moves away."""
+    ray = np.linspace(math.pi, 0.0, 12)
+    inner, outer = (r * np.column_stack([np.cos(ray), np.sin(ray)]) for r in (1.8, 2.2))
+    blocks = [np.array([outer[k], inner[k], inner[k + 1], outer[k + 1]]) for k in range(11)]
+    return build_scene(
+        "ring",
+        blocks,
+        thickness=0.5,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.7, elasticity=Stiffness(1e9, 4e8), inset=0.003),
+        grounds=[rectangle(-3.0, -0.3, 1.8, 0.3), rectangle(1.2, -0.3, 1.8, 0.3)],
+        load=Load(live=(Settlement(box=((1.0, -1.0), (5.0, 0.0)), by=(spread, 0.0)),)),
+    )
+
+
+def test_fall_does_not_depend_on_how_far_supports_would_move() -> None:
+    """In stages of up to a tenth of the way, the way to .9 m ends in rubble that a ledger cannot account for."""
+    intervals = [fall_interval(far(voussoirs(spread))) for spread in (0.6, 0.9)]
+    assert max(rest for rest, _ in intervals) == pytest.approx(min(fall for _, fall in intervals), rel=0.01)
+
+
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
 def test_arch_on_a_spreading_support_has_the_thrust_of_its_moved_hinges(model: Any) -> None:
     """From .577 of its weight to .72 at a fortieth of the span, to 2e-3; each ground carries half the weight."""
@@ -90,8 +120,12 @@ def test_arch_falls_once_its_hinges_are_collinear() -> None:
     """
     line = 2 * (math.hypot(1.0, RISE) - 1.0)
     outcome = far(arch(0.2, inset=0.002))
-    assert "the wall falls beyond" in outcome.message
-    assert 0.85 * line < outcome.curve[-1, 0] < line
+    rest, fall = fall_interval(outcome)
+    assert 0.99 * line < rest < fall < 1.01 * line
+    # Its thrust grows without bound up to there, so no share is its answer.
+    assert outcome.status == "undecided"
+    assert outcome.upper is not None
+    assert outcome.upper > 1.5 * outcome.curve[-3, 1]
     left, right = outcome.motion[:2]  # at the last rest: only hinges open
     assert left[2] < -0.3 < 0.3 < right[2]
     assert left[1] == pytest.approx(right[1], rel=1e-2)
@@ -140,14 +174,12 @@ def leaning(width: float, height: float, **joint: Any) -> Scene:
 def test_block_on_tilting_ground_topples_or_slides_at_the_exact_angle(
     model: Any, width: float, friction: float, tangent: float
 ) -> None:
-    """At tan θ = b / h, or tan φ: its last rest is the last load stage below that angle."""
-    outcome = model(leaning(width, 0.5, friction=friction), 0.05, displacements="finite")
+    """At tan θ = b / h, or tan φ, between its last rest and its fall, at speeds at which these agree to 2 %."""
+    outcome = model(leaning(width, 0.5, friction=friction), 0.02, displacements="finite")
     assert outcome.status == "collapse", outcome.message
-    assert "the wall falls beyond" in outcome.message
-    share = outcome.curve[:, 0] / (outcome.curve[-1, 0] or 1.0)
-    rests = np.degrees(math.atan(tangent)) / 10.0
-    stages = np.linspace(0.0, 1.0, 21) ** 2
-    assert len(share) == (stages < rests).sum()
+    whole = 400 * outcome.curve[1, 0]  # the first of 20 stages, whose lengths grow linearly
+    rest, fall = 10.0 * fall_interval(outcome) / whole
+    assert rest < math.degrees(math.atan(tangent)) < fall < 1.03 * rest
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])

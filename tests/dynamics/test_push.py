@@ -254,7 +254,11 @@ def test_message_on_vanishing_load_depends_on_control_point_motion(ends: tuple[f
     """If another block falls, the control point moves only by the elastic deformation of its joints."""
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
-    assert said in lead.fall(np.column_stack([ends, (0.3, -0.1)]))
+    rows = [
+        TraverseRow(moved, force, np.zeros((0, 2)), np.zeros(0), (0.0, 0.0), ())
+        for moved, force in zip(ends, (0.3, -0.1), strict=True)
+    ]
+    assert said in lead.fall(Traverse(nothing, np.zeros(0), True, rows))
 
 
 def test_low_load_pushes_block_to_balance() -> None:

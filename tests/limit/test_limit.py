@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -611,8 +612,8 @@ def test_disjoint_load_intervals_are_listed() -> None:
 
 def _certificate(least: float, most: float) -> Certificate:
     none = np.zeros(0)
-    ends = [ForceSolution("optimal", x, none, none, none, none, 0) for x in (least, most)]
-    return Certificate(none, *ends)
+    first, last = (ForceSolution("optimal", x, none, none, none, none, 0) for x in (least, most))
+    return Certificate(none, first, last)
 
 
 @pytest.mark.parametrize("width", [0.2, 0.5, 0.999, 1.0, 1.000000003, 1.000000006, 1.00000001])
@@ -692,3 +693,22 @@ def test_block_without_tension_topples_at_any_cohesion(cohesion: float) -> None:
     scene = panel(wall__length=0.24, wall__height=0.06, wall__first_course="full", joint=joint, load__gravity=0.01)
     for model in (limit, limit_nonassociated):
         assert model(scene).lower == pytest.approx(4.0, rel=1e-9)
+
+
+def test_stone_wedged_between_rocks_may_take_any_larger_load() -> None:
+    """It is lifted by its weight if nothing presses its sides, and by more the more the rocks press it."""
+    rocks = [rectangle(-1, 0, 1, 1), rectangle(1, 0, 1, 1), rectangle(-1, -1, 3, 1)]
+    tables: dict[str, Any] = {
+        "block": {"density": 1000.0},
+        "joint": {"friction": 0.6},
+        "wall": {
+            "thickness": 1.0,
+            "outlines": [rectangle(0, 0, 1, 1).tolist()],
+            "ground": [rock.tolist() for rock in rocks],
+        },
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81, "live": {"kind": "point", "at": [0.5, 1.0], "force": [0, 1]}},
+    }
+    outcome = limit_nonassociated(scene_from_dict(tables))
+    assert (outcome.lower, outcome.upper) == pytest.approx((9810.0, 9810.0))
+    assert "at every load larger than 9,810 as well" in outcome.message
