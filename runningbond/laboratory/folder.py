@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable, Container, Iterator
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, dropwhile
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,9 @@ NAME = "test unit name"
 HEADS = ["displacement_mm", "force_kN"]
 CURVE, SCENE, CRACKS = ENDINGS = (".csv", ".toml", "-cracks.png")
 SEPARATORS = ",;\t"
-COMMENT = "#"
+COMMENT = re.compile(r"#(?!(N/A|NV|DIV/0!|VALUE!|REF!|NUM!|NAME\?|NULL!)\s*([,;\t]|$))", re.IGNORECASE)
+"""Beginning of a comment: #, unless it is that of an error value of a spreadsheet."""
+
 WRONG_UNIT = 100.0
 """Ratio of the largest force of a curve to that of the table, or its inverse, above which one of them has a wrong
 unit."""
@@ -41,7 +43,8 @@ def read_folder(folder: Path, refuse: Callable[[SceneError], None] = raised) -> 
 
     The table is the one CSV file that has a column ``Test unit name``; ``NAME.csv`` contains a wall's curve,
     ``NAME.toml`` its scene and ``NAME-cracks.png`` its cracks, each optional. Entries are separated by commas, or by
-    semicolons or tabs, in which case numbers may have decimal commas. Lines that begin with # are comments.
+    semicolons or tabs, in which case numbers may have decimal commas. Lines that begin with # are comments. Empty lines
+    separate the loops of a curve, as ``NaN,NaN`` does.
 
     Parameters
     ----------
@@ -96,7 +99,7 @@ def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
     tables, unread = list[Path](), list[SceneError]()
     for name, path in _files(folder).items():
         try:
-            heads = next(_lines(path), (0, []))[1] if name.endswith(CURVE) else []
+            heads = next(_filled_lines(path), (0, []))[1] if name.endswith(CURVE) else []
         except SceneError as error:  # belongs to a refused wall, unless it is the table
             unread.append(error)
         else:
@@ -107,26 +110,36 @@ def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
     if len(tables) != 1:
         found = f"has {len(tables)}: {', '.join(path.name for path in tables)}" if tables else "has none"
         raise SceneError(str(folder), f'must hold one table, a CSV file with a column "Test unit name"; it {found}')
-    return tables[0], list(_lines(tables[0]))
+    return tables[0], list(_filled_lines(tables[0]))
+
+
+def _is_empty(cells: list[str]) -> bool:
+    """Whether a line has no entries."""
+    return not any(cell.strip() for cell in cells)
+
+
+def _filled_lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Numbers and entries of the lines that are neither empty nor comments."""
+    return ((number, cells) for number, cells in _lines(path) if not _is_empty(cells))
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Numbers and entries of the lines that are neither empty nor comments."""
+    """Numbers and entries of the lines that are no comments."""
     try:
         text = path.read_bytes().decode("utf-8-sig")
-        told = [line for line in text.splitlines() if line.strip() and not line.startswith(COMMENT)]
+        told = [line for line in text.splitlines() if line.strip() and not COMMENT.match(line)]
         separator = max(SEPARATORS, key=told[0].count) if told else ","
         rest, number = io.StringIO(text, newline=""), 0
         for line in rest:
             number += 1
-            if line.startswith(COMMENT):
+            if COMMENT.match(line):
                 continue
             reader = csv.reader(chain([line], rest), strict=True, delimiter=separator)
             try:
                 cells = next(reader)
             finally:
                 number += reader.line_num - 1  # a quoted entry may have several lines
-            if any(cell.strip() for cell in cells) and not cells[0].startswith(COMMENT):
+            if not (cells and COMMENT.match(cells[0])):
                 yield number, cells if separator == "," else [_with_point(cell) for cell in cells]
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
@@ -202,8 +215,11 @@ def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -
 
 
 def read_curve(path: Path) -> Array:
-    """Displacement [m] and force [N] of a curve, ``(n, 2)``; rows of two NaN separate its loops."""
-    lines = list(_lines(path))
+    """Displacement [m] and force [N] of a curve, ``(n, 2)``; rows of two NaN separate its loops.
+
+    In the file, a row without both numbers separates loops: an empty line, or a row with two entries of `NOTHING`.
+    """
+    lines = list(dropwhile(lambda line: _is_empty(line[1]), _lines(path)))
     heads = [cell.strip() for cell in lines[0][1]] if lines else []
     if any(head not in heads for head in HEADS):
         raise SceneError(
@@ -216,19 +232,25 @@ def read_curve(path: Path) -> Array:
             raise SceneError(f"{path.name}, line {number}", what, ",".join(cells))
     rows = [_point(path, number, [cells[k] if k < len(cells) else "" for k in columns]) for number, cells in lines[1:]]
     curve = np.array(rows, dtype=float).reshape(-1, 2) * (1e-3, 1e3)
-    known = curve[~np.isnan(curve).any(axis=1)]
+    is_point = ~np.isnan(curve[:, 0])
+    known = curve[is_point]
     if len(known) < 2 or not np.ptp(known[:, 0]) or not known[:, 1].any():
         raise SceneError(
             path.name, "must hold points of a curve: two or more, at different displacements, under a force"
         )
+    if not (is_point[1:] & is_point[:-1]).any():
+        raise SceneError(path.name, "has a gap after every point, such as an empty line; gaps must separate loops")
     return curve
 
 
 def _point(path: Path, line: int, cells: list[str]) -> tuple[float, float]:
+    if all(cell.strip().casefold() in NOTHING for cell in cells):
+        return math.nan, math.nan
     try:
         x, y = (float(cell) for cell in cells)
     except ValueError:
         x, y = math.inf, math.inf
     if math.isinf(x) or math.isinf(y) or math.isnan(x) != math.isnan(y):
-        raise SceneError(f"{path.name}, line {line}", "must be two numbers, or NaN,NaN between loops", ",".join(cells))
+        what = "must be two numbers, or NaN,NaN or empty between loops"
+        raise SceneError(f"{path.name}, line {line}", what, ",".join(cells))
     return x, y

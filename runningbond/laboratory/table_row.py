@@ -17,7 +17,7 @@ USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "n
 USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
 """Default units of columns, for heads without a unit."""
 
-NOTHING = ("", "-", "–", "nan", "n/a")
+NOTHING = ("", "-", "–", "nan", "na", "n/a", "#n/a", "#nv")
 """Entries that count as empty, in lower case."""
 
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)

@@ -365,6 +365,9 @@ def test_invalid_table_is_refused(tmp_path: Path, rows: list[str], heads: str, s
         (CURVE + "1\n", "WS.175.csv, line 6 = '1,': must be two numbers"),
         (CURVE + "1,nan\n", "WS.175.csv, line 6 = '1,nan': must be two numbers"),
         (CURVE + "1,inf\n", "WS.175.csv, line 6 = '1,inf': must be two numbers"),
+        (CURVE + "#N/A,3\n", "WS.175.csv, line 6 = '#N/A,3': must be two numbers"),
+        (CURVE + "#DIV/0!,#DIV/0!\n", "WS.175.csv, line 6 = '#DIV/0!,#DIV/0!': must be two numbers"),
+        (CURVE.replace("\n", "\n\n"), "WS.175.csv: has a gap after every point, such as"),
         (CURVE + "1,5,20,3\n", "WS.175.csv, line 6 = '1,5,20,3': must have 2 entries, as its heads; has 4"),
         (CURVE.replace(",", ";") + "1.000,5;2\n", "WS.175.csv, line 6 = '1.000,5,2': must be two numbers"),
         ("displacement_mm,force_kN\n1,1\n", "WS.175.csv: must hold points of a curve"),
@@ -388,7 +391,7 @@ def test_invalid_curve_is_refused(tmp_path: Path, curve: str, said: str) -> None
         lambda text: text.replace(",", ";").replace(".5", ",5"),
         lambda text: text.replace("\n", "\r\n"),
         lambda text: "\ufeff" + text,
-        lambda text: "# measured; in, 2005\n\n" + text.replace("\n1.5", "\n# a pause\n\n1.5") + "# end\n",
+        lambda text: "# measured; in, 2005\n\n" + text.replace("\n1.5", "\n# a pause\n1.5") + "# end\n",
     ],
 )
 def test_curve_does_not_depend_on_the_spreadsheet_format(change: Callable[[str], str], tmp_path: Path) -> None:
@@ -396,6 +399,23 @@ def test_curve_does_not_depend_on_the_spreadsheet_format(change: Callable[[str],
     curves = [read_folder(write_folder(tmp_path, GRANITE, curve=each))[0].curve for each in (text, change(text))]
     assert np.array_equal(curves[0], curves[1], equal_nan=True)
     assert curves[0][1] == pytest.approx([1.5e-3, 30.5e3])
+
+
+@pytest.mark.parametrize("row", ["", "  ", ",", "#N/A,#N/A", "#nv,#nv", "NA,NA", "-,-"])
+def test_rows_without_numbers_separate_loops(row: str, tmp_path: Path) -> None:
+    """They were once skipped, and the loops on both sides joined to one."""
+    text = "displacement_mm,force_kN\n0,0\n1,30\nNaN,NaN\n1,0\n10,61\n"
+    texts = (text, text.replace("NaN,NaN", row))
+    curves = [read_folder(write_folder(tmp_path, GRANITE, curve=each))[0].curve for each in texts]
+    assert np.array_equal(curves[0], curves[1], equal_nan=True)
+
+
+def test_numbered_rows_without_numbers_separate_loops(tmp_path: Path) -> None:
+    """A data frame of pandas is written with a column of row numbers, and NaN as nothing; it was once refused."""
+    curve = ",displacement_mm,force_kN\n0,0,0\n1,1,30\n2,,\n3,1,0\n4,10,61\n"
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE, curve=curve))
+    assert np.isnan(wall.curve[2]).all()
+    assert wall.curve[4] == pytest.approx([0.01, 61e3])
 
 
 def test_comments_may_contain_quotes(tmp_path: Path) -> None:
