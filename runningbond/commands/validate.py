@@ -67,7 +67,10 @@ def validate(
     walls = [wall for wall in walls if (wall.name, rungs[0].name) in scenes]
     for error in refused:
         say(str(error))
+    reasons = {"refused": [str(error) for error in refused]}
     if not walls:
+        if json:
+            print(to_json.dumps({"walls": [], "summary": as_json([]), **reasons}))
         return BAD_INPUT
     for name in (name for folder in folders for name in unused(folder)):
         print(f"note: {name} belongs to no wall in the table", file=sys.stderr)
@@ -84,8 +87,7 @@ def validate(
         written = write_laboratory(predictions, out, refused)
     sums = totals(predictions)
     if json:
-        content = {"walls": [each.row() for each in predictions], "summary": as_json(sums)}
-        content |= {"refused": [str(error) for error in refused]}
+        content = {"walls": [each.row() for each in predictions], "summary": as_json(sums), **reasons}
         print(to_json.dumps(content, allow_nan=False))
     else:
         for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):

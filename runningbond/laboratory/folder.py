@@ -15,11 +15,10 @@ from matplotlib.image import imread
 from runningbond.scene import Array, SceneError
 
 from .measured import CYCLIC, MONOTONIC, SWING, MeasuredWall
-from .table_row import NOTHING, TableRow
+from .table_row import NAME, NOTHING, TableRow
 
 DATA = Path(__file__).parent / "data"
 SHIPPED = (DATA / "dry", DATA / "mortared")
-NAME = "test unit name"
 HEADS = ["displacement_mm", "force_kN"]
 CURVE, SCENE, CRACKS = ENDINGS = (".csv", ".toml", "-cracks.png")
 SEPARATORS = ",;\t"

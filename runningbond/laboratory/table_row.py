@@ -13,6 +13,9 @@ STRESSES, SHARES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}, {"%": 1e-2}
 KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES, SHARES)
 """Units of each kind, and their sizes in SI units."""
 
+NAME = "test unit name"
+"""Column of the walls' names."""
+
 USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
 USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
 """Default units of columns, for heads without a unit."""
@@ -40,11 +43,8 @@ class TableRow:
     @classmethod
     def read(cls, path: Path, line: int, heads: list[str], cells: list[str]) -> "TableRow":
         """Make a row from cells; there may be fewer cells than heads, but not more."""
-        if any(cell.strip() for cell in cells[len(heads) :]):
-            raise SceneError(
-                f"{path.name}, line {line}", f"must have {len(heads)} entries, as its heads; has {len(cells)}"
-            )
         entries: dict[str, tuple[str, str]] = {}
+        row = cls(path, line, entries)
         for head, cell in zip(heads, cells, strict=False):
             parts = HEAD.match(head.strip().lstrip("\ufeff"))
             assert parts is not None  # it matches any text
@@ -53,14 +53,17 @@ class TableRow:
             before = entries.get(name, ("", ""))
             if name and entry[0] and before[0] and entry != before:
                 what = f"is in another column as well, as {' '.join(before).strip()}; leave one of them empty"
-                raise SceneError(f"{path.name}, line {line}: {parts[1]}", what, " ".join(entry).strip())
+                raise SceneError(row.key(parts[1]), what, " ".join(entry).strip())
             entries[name] = entry if entry[0] or not before[0] else before
-        return cls(path, line, entries)
+        if any(cell.strip() for cell in cells[len(heads) :]):
+            raise SceneError(row.place, f"must have {len(heads)} entries, as its heads; has {len(cells)}")
+        return row
 
     @property
     def place(self) -> str:
-        """Name of the row in messages."""
-        return f"{self.path.name}, line {self.line}"
+        """Name of the row in messages: its wall, if it has a name, file and line."""
+        name = " ".join(self.text(NAME).split())
+        return f"{name}{': ' if name else ''}{self.path.name}, line {self.line}"
 
     def key(self, column: str) -> str:
         """Name of an entry in messages."""

@@ -251,7 +251,7 @@ def test_units_of_another_quantity_are_refused(
     folder = write_folder(tmp_path / "walls", GRANITE, heads=HEADS.replace(usual, other))
     assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), *QUICK]) == 2
     unit = other.partition("[")[2].rstrip("]")
-    said = f"runningbond: tests.csv, line 2: {column} = '{unit}': must have a unit, one of {units}\n"
+    said = f"runningbond: WS.175: tests.csv, line 2: {column} = '{unit}': must have a unit, one of {units}\n"
     assert capsys.readouterr().err == said
     assert not (tmp_path / "out").exists()
 
@@ -263,9 +263,10 @@ def test_impossible_wall_gives_one_line_and_no_files(
     folder = write_folder(tmp_path / "walls", row)
     assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), *QUICK, "--json"]) == 2
     told = capsys.readouterr()
-    assert told.out == ""
-    assert told.err.startswith("runningbond: tests.csv, line 2: ")
+    assert told.err.startswith("runningbond: WS.175: tests.csv, line 2: ")
     assert len(told.err.splitlines()) == 1
+    refused = [told.err.removeprefix("runningbond: ").strip()]
+    assert json.loads(told.out) == {"walls": [], "summary": {"cheapest": None}, "refused": refused}
     assert not (tmp_path / "out").exists()
 
 
@@ -283,7 +284,8 @@ def test_refused_wall_does_not_stop_the_others(tmp_path: Path, capsys: pytest.Ca
     assert [row["wall"] for row in content["walls"]] == ["WS.175"]
     lines = [
         "SW.100.1.csv, line 1 = 'mm,kN': must be the heads displacement_mm,force_kN",
-        "tests.csv, line 2: Stone = 'Marble': must be one of sandstone, granite; for another give a scene NAME.toml",
+        "marble: tests.csv, line 2: Stone = 'Marble': must be one of sandstone, granite; for another give a scene "
+        "NAME.toml",
         "scene.toml: beam.drive: is missing; a tested wall is pushed at its beam",
     ]
     assert content["refused"] == lines

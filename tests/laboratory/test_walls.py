@@ -340,7 +340,7 @@ def test_invalid_row_is_refused_with_file_and_line(tmp_path: Path, row: str, sai
             "'a$b': must be a name, as it may be that of a file, without $",
         ),
         ([GRANITE[6:]], HEADS, "tests.csv, line 2: Test unit name = '': must be a name"),
-        ([GRANITE + ",1,2"], HEADS, "tests.csv, line 2: must have 14 entries, as its heads; has 16"),
+        ([GRANITE + ",1,2"], HEADS, "WS.175: tests.csv, line 2: must have 14 entries, as its heads; has 16"),
         ([GRANITE.replace(",61,", ",x,")], HEADS, "tests.csv, line 2: Vmax,+ = 'x': must be a number above 0"),
         ([GRANITE], HEADS.replace("Vmax,+ [kN]", "Vmax,+ [kip]"), "Vmax,+ = 'kip': must have a unit, one of N, kN"),
         ([GRANITE], HEADS.replace("Test unit name", "wall"), 'a CSV file with a column "Test unit name"; it has none'),
