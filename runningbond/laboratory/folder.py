@@ -4,7 +4,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import chain, dropwhile
 from pathlib import Path
@@ -80,15 +80,22 @@ def shipped_walls() -> dict[str, MeasuredWall]:
 def unused(folder: Path) -> list[str]:
     """Files of a folder that are named like the files of a wall, but belong to no wall in its table."""
     table, lines = _table(folder)
+    files = _files(folder)
     named = {cell.strip() for _, cells in lines for cell in cells}
-    own = {table, *(_files(folder).get(f"{name}{ending}") for name in named for ending in ENDINGS)}
-    return sorted(path.name for name, path in _files(folder).items() if name.endswith(ENDINGS) and path not in own)
+    own = {table, *(_file(files, f"{name}{ending}") for name in named for ending in ENDINGS)}
+    return sorted(path.name for name, path in files.items() if name.endswith(ENDINGS) and path not in own)
 
 
 def _files(folder: Path) -> dict[str, Path]:
     """Visible files of a folder, by name with the ending in lower case."""
     files = (path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith("."))
     return {path.with_suffix(path.suffix.lower()).name: path for path in files}
+
+
+def _file(files: Mapping[str, Path], name: str) -> Path | None:
+    """The file of a name, else the first that differs from it only in upper and lower case; None if there is none."""
+    alike = (path for other, path in files.items() if other.casefold() == name.casefold())
+    return files.get(name) or next(alike, None)
 
 
 def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
@@ -153,14 +160,15 @@ def _with_point(cell: str) -> str:
     return cell.replace(",", ".") if DECIMAL.fullmatch(cell) else cell
 
 
-def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
+def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     name = row.text(NAME)
     if not name or name.startswith(".") or set(name) & set('/\\:*?"<>|$'):
         raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file, without $", name)
-    if name in others:
-        raise SceneError(row.key("Test unit name"), "is the second row of that name", name)
+    if name.casefold() in map(str.casefold, others):
+        what = "is the second row of that name; names must differ in more than upper and lower case"
+        raise SceneError(row.key("Test unit name"), what, name)
     files = _files(folder)
-    there = {ending: files[f"{name}{ending}"] for ending in ENDINGS if f"{name}{ending}" in files}
+    there = {ending: path for ending in ENDINGS if (path := _file(files, f"{name}{ending}"))}
     kind = row.text("cyclic / monotonic")
     if kind.casefold() not in NOTHING and not any(word in kind.casefold() for word in (CYCLIC, MONOTONIC)):
         what = 'must be "Cyclic" or "Monotonic"; or empty, where the record says it'

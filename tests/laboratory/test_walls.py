@@ -11,7 +11,7 @@ import pytest
 
 from runningbond.joints import joint_stiffness
 from runningbond.laboratory import MeasuredWall, read_folder, shipped_walls
-from runningbond.laboratory.folder import DATA, unused
+from runningbond.laboratory.folder import DATA, _file, unused
 from runningbond.laboratory.ladder import LADDER, Rung
 from runningbond.laboratory.measured import growing, turning_points
 from runningbond.laboratory.predictions import scenes_of
@@ -501,6 +501,22 @@ def test_file_extension_is_case_insensitive(tmp_path: Path) -> None:
     (folder / "WS.250.csv").write_text(CURVE)
     assert len(read_folder(folder)[0].curve) == 4
     assert unused(folder) == ["WS.250.csv"]
+
+
+def test_files_of_a_wall_may_be_named_in_another_case(tmp_path: Path) -> None:
+    """The curve ws.175.csv was once left out, and the wall treated as one without a record."""
+    folder = write_folder(tmp_path, GRANITE)
+    (folder / "WS.175.csv").rename(folder / "ws.175.csv")
+    assert len(read_folder(folder)[0].curve) == 4
+    assert unused(folder) == []
+    files = {name: tmp_path / name for name in ("a.csv", "A.csv")}
+    assert [_file(files, name) for name in ("A.csv", "a.csv", "b.csv")] == [files["A.csv"], files["a.csv"], None]
+
+
+def test_names_that_differ_only_in_case_are_refused(tmp_path: Path) -> None:
+    """Their files, and pictures of the page, could be the same ones."""
+    with pytest.raises(SceneError, match=r"line 3: Test unit name = 'ws\.175': is the second row of that name"):
+        read_folder(write_folder(tmp_path, GRANITE, GRANITE.replace("WS", "ws")))
 
 
 @pytest.mark.parametrize(
