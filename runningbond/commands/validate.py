@@ -55,6 +55,7 @@ def validate(
     """
     from runningbond.laboratory.folder import SHIPPED, read_folder, unused
     from runningbond.laboratory.ladder import find_rungs
+    from runningbond.laboratory.notes import notes_on
     from runningbond.laboratory.page import error_sheet, score_sheet, write_laboratory
     from runningbond.laboratory.predictions import predict, scenes_of
     from runningbond.laboratory.summary import as_json, summary_sheet, totals, verdicts
@@ -74,6 +75,9 @@ def validate(
         return BAD_INPUT
     for name in (name for folder in folders for name in unused(folder)):
         print(f"note: {name} belongs to no wall in the table", file=sys.stderr)
+    for wall in walls:
+        for note in notes_on(wall):
+            print(f"note: {wall.name}: {note}", file=sys.stderr)
     make_folder(out)
     total = len(walls) * len(rungs)
     try:

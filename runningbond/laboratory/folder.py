@@ -29,6 +29,9 @@ WRONG_UNIT = 100.0
 """Ratio of the largest force of a curve to that of the table, or its inverse, above which one of them has a wrong
 unit."""
 
+BETWEEN_MODES = re.compile(r"[,;/+&]|\b(?:and|with)\b|(?<![a-z]{3})[-–—](?![a-z]{3})", re.IGNORECASE)
+"""What separates failure modes: hyphens as well, as in R-TC, but not within words, as in toe-crushing."""
+
 DECIMAL = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 
 
@@ -178,8 +181,7 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
         raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")
     if CRACKS in there:
         _check_picture(there[CRACKS])
-    said = re.split(r"[,;/+&]", row.text("from test report: failure type"))
-    modes = tuple(mode.strip().upper() for mode in said if mode.strip())
+    modes = _words(row.text("from test report: failure type"))
     printed = [row.optional("Vmax,+"), row.optional("Vmax,-", magnitude=True)]
     peaks = tuple(value for value in printed if value is not None)
     if len(curve) and peaks:
@@ -191,6 +193,12 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     if _is_pushed_left(wall):
         wall = replace(wall, curve=-curve, is_turned=True)
     return replace(wall, peaks=_peaks(wall, *printed))
+
+
+def _words(said: str) -> tuple[str, ...]:
+    """Failure modes in the words of a table, in capitals."""
+    parts = [] if said.casefold() in NOTHING else BETWEEN_MODES.split(said)
+    return tuple(" ".join(part.replace("-", " ").upper().split()) for part in parts if part.strip())
 
 
 def _check_picture(path: Path) -> None:

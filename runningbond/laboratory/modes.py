@@ -19,7 +19,11 @@ from runningbond.scene import Array, Scene
 
 ROCKING, DIAGONAL, SLIDING = "R/TC", "F", "SL"
 GROUPS = {"R": ROCKING, "TC": ROCKING, "F": DIAGONAL, "S": DIAGONAL, "DT": DIAGONAL, "SL": SLIDING}
-"""Modes by the words of the tables; toe crushing belongs to rocking."""
+"""Modes by the letters of the tables; toe crushing belongs to rocking."""
+
+NAMED = {"ROCKING": ROCKING, "TOE CRUSHING": ROCKING, "SLIDING": SLIDING}
+NAMED |= {f"{kind}DIAGONAL{crack}": DIAGONAL for kind in ("", "STEPPED ") for crack in ("", " CRACK", " CRACKING")}
+"""Modes by their names, where a table does not have the letters."""
 
 HALF = 0.5
 
@@ -29,7 +33,8 @@ VISIBLE = 1e-4
 
 def measured_modes(words: Iterable[str]) -> tuple[str, ...]:
     """Failure modes named in a report; other words are ignored."""
-    return tuple(dict.fromkeys(GROUPS[word] for word in words if word in GROUPS))
+    known = GROUPS | NAMED
+    return tuple(dict.fromkeys(known[word] for word in words if word in known))
 
 
 def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:

@@ -19,6 +19,7 @@ from runningbond.studies.page import Block, Picture, write_page, write_picture
 from .cards import card, drawn_by, error_over_cost
 from .ladder import LADDER, Rung
 from .measured import MeasuredWall
+from .notes import notes_on
 from .predictions import Prediction
 from .rig import vertical_load
 from .stones import sources
@@ -123,7 +124,7 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
     if wall.cracks:
         caption += ", beside the cracks"
     picture = write_picture(card(own), folder / f"wall-{wall.name}.png", caption + ".", dots=150)
-    told = [f"Published in {wall.reference}. {_rig(wall, own[0])}"]
+    told = [f"Published in {wall.reference}. {_rig(wall, own[0])}", *(f"Note: {note}." for note in notes_on(wall))]
     if not wall.is_scored:
         told.append("Shown, not scored: it took more than rocking or friction allow; its beam was not as free as said.")
     said = [[each.rung.name, each.row()["message"]] for each in own]

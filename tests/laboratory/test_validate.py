@@ -305,6 +305,17 @@ def test_curves_without_a_wall_are_reported(tmp_path: Path, capsys: pytest.Captu
     assert "note: WS 175.csv belongs to no wall in the table\n" in capsys.readouterr().err
 
 
+def test_failure_types_that_are_not_understood_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """On standard error and on the page; once they were only left out."""
+    folder, out = write_folder(tmp_path / "walls", GRANITE[:-1] + "R + fell over"), tmp_path / "out"
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--json"]) == 0
+    told = capsys.readouterr()
+    assert [row["mode_right"] for row in json.loads(told.out)["walls"]] == [True]
+    said = "failure type 'FELL OVER' is not understood and does not count; the words are R, TC, F, S, DT, SL, rocking, "
+    assert f"note: WS.175: {said}" in told.err
+    assert f"Note: {said}" in (out / "laboratory.md").read_text()
+
+
 def test_picture_of_a_wall_with_a_space_in_its_name_is_linked(tmp_path: Path) -> None:
     folder, out = write_folder(tmp_path / "walls", GRANITE.replace("WS.175", "Wand (Süd)")), tmp_path / "out"
     arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]

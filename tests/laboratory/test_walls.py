@@ -14,6 +14,8 @@ from runningbond.laboratory import MeasuredWall, read_folder, shipped_walls
 from runningbond.laboratory.folder import DATA, _file, unused
 from runningbond.laboratory.ladder import LADDER, Rung
 from runningbond.laboratory.measured import growing, turning_points
+from runningbond.laboratory.modes import measured_modes
+from runningbond.laboratory.notes import notes_on
 from runningbond.laboratory.predictions import scenes_of
 from runningbond.laboratory.rig import Features, _tables, scene_of, vertical_load
 from runningbond.laboratory.scores import marks_of
@@ -155,6 +157,31 @@ def test_extra_columns_other_table_names_and_missing_entries_are_accepted(tmp_pa
 
 def test_report_words_are_split_and_unknown_ones_kept(tmp_path: Path) -> None:
     assert one(tmp_path, GRANITE[:-1] + "R + tc / falls").modes == ("R", "TC", "FALLS")
+
+
+@pytest.mark.parametrize(
+    ("said", "modes"),
+    [
+        ("Rocking", ("R/TC",)),
+        ("rocking/toe crushing", ("R/TC",)),
+        ("Rocking with toe-crushing", ("R/TC",)),
+        ("R - TC", ("R/TC",)),
+        ("R-TC", ("R/TC",)),
+        ("S", ("F",)),
+        ("Stepped diagonal crack and sliding", ("F", "SL")),
+    ],
+)
+def test_modes_may_be_written_out(said: str, modes: tuple[str, ...], tmp_path: Path) -> None:
+    """Only the letters were once understood, and only between commas, slashes and plus signs."""
+    wall = one(tmp_path, GRANITE[:-1] + said)
+    assert measured_modes(wall.modes) == modes
+    assert notes_on(wall) == []
+
+
+@pytest.mark.parametrize("said", ["", "-", "–", "n/a"])
+def test_no_word_is_no_mode(said: str, tmp_path: Path) -> None:
+    """The dash of an empty entry, and both letters of n/a, were once taken for modes."""
+    assert one(tmp_path, GRANITE[:-1] + said).modes == ()
 
 
 def test_wall_pushed_to_the_negative_side_is_mirrored(tmp_path: Path) -> None:
