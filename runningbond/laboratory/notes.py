@@ -6,10 +6,20 @@ from .modes import GROUPS, NAMED
 
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    return [*_unknown_modes(wall)]
+    return [*_unknown_modes(wall), *_missing_cycles(wall)]
 
 
 def _unknown_modes(wall: MeasuredWall) -> list[str]:
     words = ", ".join([*GROUPS, *(word.lower() for word in NAMED)])
     unknown = (word for word in wall.modes if word not in GROUPS | NAMED)
     return [f"failure type '{word}' is not understood and does not count; the words are {words}" for word in unknown]
+
+
+def lacks_cycles(wall: MeasuredWall) -> bool:
+    """Whether a cyclic test is predicted by a push to one side, because neither record nor scene has its cycles."""
+    return wall.is_cyclic and not len(wall.curve) and wall.scene_file is None
+
+
+def _missing_cycles(wall: MeasuredWall) -> list[str]:
+    what = f"the test was cyclic, but there is no {wall.name}.csv with its cycles; models push the wall to one side"
+    return [what] if lacks_cycles(wall) else []

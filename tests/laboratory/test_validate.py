@@ -316,6 +316,22 @@ def test_failure_types_that_are_not_understood_are_reported(tmp_path: Path, caps
     assert f"Note: {said}" in (out / "laboratory.md").read_text()
 
 
+def test_cyclic_wall_without_a_record_is_said_to_be_pushed_to_one_side(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The page once called it pushed to and fro, as the test was, whatever the models did."""
+    row = GRANITE.replace("Monotonic", "Cyclic")
+    folder, out = write_folder(tmp_path / "walls", row, row.replace("WS.175", "WS2.175")), tmp_path / "out"
+    (folder / "WS.175.csv").unlink()
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking"]) == 0
+    notes = [line for line in capsys.readouterr().err.splitlines() if line.startswith("note: WS")]
+    said = "the test was cyclic, but there is no WS.175.csv with its cycles; models push the wall to one side"
+    assert notes == [f"note: WS.175: {said}"]
+    page = (out / "laboratory.md").read_text()
+    assert f"Note: {said}." in page
+    assert (page.count("pushed to one side;"), page.count("pushed to and fro;")) == (1, 1)
+
+
 def test_picture_of_a_wall_with_a_space_in_its_name_is_linked(tmp_path: Path) -> None:
     folder, out = write_folder(tmp_path / "walls", GRANITE.replace("WS.175", "Wand (Süd)")), tmp_path / "out"
     arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]
