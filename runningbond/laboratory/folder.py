@@ -32,6 +32,9 @@ unit."""
 BETWEEN_MODES = re.compile(r"[,;/+&]|\b(?:and|with)\b|(?<![a-z]{3})[-–—](?![a-z]{3})", re.IGNORECASE)
 """What separates failure modes: hyphens as well, as in R-TC, but not within words, as in toe-crushing."""
 
+DRIFTS = (1e-4, 1.0)
+"""Largest displacements of a curve, relative to the actuator's height, at and beyond which their unit is wrong."""
+
 DECIMAL = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 
 
@@ -179,6 +182,8 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     curve = read_curve(there[CURVE]) if CURVE in there else np.zeros((0, 2))
     if len(curve) and np.nansum(curve[:, 0] * curve[:, 1]) <= 0:
         raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")
+    if SCENE not in there:
+        _check_displacements(name, curve, row.optional("H0"))
     if CRACKS in there:
         _check_picture(there[CRACKS])
     modes = _words(row.text("from test report: failure type"))
@@ -199,6 +204,16 @@ def _words(said: str) -> tuple[str, ...]:
     """Failure modes in the words of a table, in capitals."""
     parts = [] if said.casefold() in NOTHING else BETWEEN_MODES.split(said)
     return tuple(" ".join(part.replace("-", " ").upper().split()) for part in parts if part.strip())
+
+
+def _check_displacements(name: str, curve: Array, height: float | None) -> None:
+    """Refuse a curve whose displacements cannot be in mm, compared with the actuator's height [m]."""
+    if height is None or not len(curve):
+        return
+    largest = float(np.nanmax(np.abs(curve[:, 0])))
+    if not DRIFTS[0] < largest / height < DRIFTS[1]:
+        told = f"{1e3 * largest:.3g}, {largest / height:.2g} of H0 = {1e3 * height:.4g} mm"
+        raise SceneError(f"{name}.csv: {HEADS[0]}", f"must be in mm; the largest is {told}")
 
 
 def _check_picture(path: Path) -> None:

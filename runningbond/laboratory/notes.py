@@ -1,12 +1,14 @@
 """Notes on walls: what is unusual in their data, and how it is taken."""
 
-from .measured import MeasuredWall
+import numpy as np
+
+from .measured import SWING, MeasuredWall
 from .modes import GROUPS, NAMED
 
 
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    return [*_unknown_modes(wall), *_missing_cycles(wall)]
+    return [*_unknown_modes(wall), *_missing_cycles(wall), *_offset(wall)]
 
 
 def _unknown_modes(wall: MeasuredWall) -> list[str]:
@@ -23,3 +25,15 @@ def lacks_cycles(wall: MeasuredWall) -> bool:
 def _missing_cycles(wall: MeasuredWall) -> list[str]:
     what = f"the test was cyclic, but there is no {wall.name}.csv with its cycles; models push the wall to one side"
     return [what] if lacks_cycles(wall) else []
+
+
+def _offset(wall: MeasuredWall) -> list[str]:
+    """A record that starts with a displacement but no force to its side, or the other way round."""
+    known = wall.curve[~np.isnan(wall.curve[:, 0])]
+    if not len(known):
+        return []
+    (x, y), (far, peak) = known[0], np.abs(known).max(axis=0)
+    is_offset = abs(x) > SWING * far and y * np.sign(x) <= 0
+    is_offset |= abs(y) > SWING * peak and x * np.sign(y) <= 0
+    start = f"{1e3 * x:.3g} mm under {y / 1e3:.3g} kN"
+    return [f"the record starts at {start}, and is read as it is; both must count from rest"] if is_offset else []

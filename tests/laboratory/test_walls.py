@@ -334,6 +334,7 @@ def test_cyclic_walls_are_pushed_to_alternating_sides() -> None:
         (GRANITE.replace(",1000,", ",-1,"), "tests.csv, line 2: L = '-1': must be a number above 0"),
         (GRANITE.replace(",1000,", ",inf,"), "tests.csv, line 2: L = 'inf': must be a number above 0"),
         (GRANITE.replace(",1000,", ",,"), "tests.csv, line 2: L: is missing"),
+        (GRANITE.replace(",1325,", ",1100,"), "H0 = '1100': must be at least the height of the wall, 1200 mm;"),
         (GRANITE.replace(",1325,", ",0,"), "tests.csv, line 2: H0 = '0': must be a number above 0"),
         (GRANITE.replace(",1200,", ",1270,"), "tests.csv, line 2: H = '1.27 m': must be a whole number of courses"),
         (
@@ -484,6 +485,33 @@ def test_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_path
     with pytest.raises(SceneError, match=r"WS\.175\.csv: has a largest force of .* one of 6\.1e\+04 N; are their"):
         read_folder(write_folder(tmp_path, GRANITE, curve=curve))
     assert len(read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))) == 1
+
+
+@pytest.mark.parametrize(("factor", "said"), [(1e-3, "0.02, 1.5e-05 of H0 = 1325 mm"), (100, "2e+03, 1.5 of H0")])
+def test_displacements_in_another_unit_are_refused(factor: float, said: str, tmp_path: Path) -> None:
+    """Metres under a head in millimetres were once predicted as a push of micrometres."""
+    curve = "displacement_mm,force_kN\n0,0\n" + f"{20 * factor:g},61\n"
+    with pytest.raises(SceneError, match=rf"WS\.175\.csv: displacement_mm: must be in mm; .* is {re.escape(said)}"):
+        read_folder(write_folder(tmp_path, GRANITE, curve=curve))
+    assert len(read_folder(write_folder(tmp_path, GRANITE.replace(",1325,", ",,"), curve=curve))) == 1
+
+
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [
+        ("5,0", "the record starts at 5 mm under 0 kN, and is read as it is; both must count from rest"),
+        ("0,10", "the record starts at 0 mm under 10 kN, and is read as it is; both must count from rest"),
+        ("1,20", ""),  # recorded only from some load on
+        ("0.1,0.5", ""),
+    ],
+)
+def test_record_that_starts_with_an_offset_is_noted(start: str, said: str, tmp_path: Path) -> None:
+    curve = f"displacement_mm,force_kN\n{start}\n6,30\n20,61\n"
+    assert notes_on(read_folder(write_folder(tmp_path, GRANITE, curve=curve))[0]) == ([said] if said else [])
+
+
+def test_no_shipped_wall_has_a_note() -> None:
+    assert [note for wall in shipped_walls().values() for note in notes_on(wall)] == []
 
 
 BROKEN = {
