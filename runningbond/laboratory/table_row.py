@@ -9,16 +9,19 @@ from pathlib import Path
 from runningbond.scene import SceneError
 
 LENGTHS, FORCES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"N": 1.0, "kN": 1e3}
-STRESSES, SHARES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}, {"%": 1e-2}
-KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES, SHARES)
+STRESSES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}
+KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES)
 """Units of each kind, and their sizes in SI units."""
 
 NAME = "test unit name"
 """Column of the walls' names."""
 
 USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
-USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
-"""Default units of columns, for heads without a unit."""
+USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "σ0,pc": "MPa"}
+"""Columns that are read as numbers, and their units if their heads have none."""
+
+WORDS = (NAME, "cyclic / monotonic", "joints", "stone", "from test report: failure type")
+"""Columns that are read as words."""
 
 NOTHING = ("", "-", "–", "nan", "na", "n/a", "#n/a", "#nv")
 """Entries that count as empty, in lower case."""
@@ -27,9 +30,8 @@ HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)
 
 
 def units_of(column: str) -> dict[str, float]:
-    """Units that a column may have: those of the same kind as its default unit, or any if it has none."""
-    usual = USUAL.get(column.casefold())
-    return {unit: size for kind in KINDS if usual is None or usual in kind for unit, size in kind.items()}
+    """Units that a column may have: those of the same kind as its default unit."""
+    return next(kind for kind in KINDS if USUAL[column.casefold()] in kind)
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class TableRow:
             name = parts[1].casefold()
             entry = (cell.strip(), parts[2] or USUAL.get(name, ""))
             before = entries.get(name, ("", ""))
-            if name and entry[0] and before[0] and entry != before:
+            if (name in USUAL or name in WORDS) and entry[0] and before[0] and entry != before:
                 what = f"is in another column as well, as {' '.join(before).strip()}; leave one of them empty"
                 raise SceneError(row.key(parts[1]), what, " ".join(entry).strip())
             entries[name] = entry if entry[0] or not before[0] else before
@@ -81,7 +83,7 @@ class TableRow:
         return value
 
     def optional(self, column: str, *, magnitude: bool = False) -> float | None:
-        """An entry as a number above 0, or the `magnitude` of a negative one, in SI units; None if it is empty."""
+        """An entry as a number above 0, or the `magnitude` of any, in SI units; None if it is empty, or that is 0."""
         text, unit = self.entries.get(column.casefold(), ("", ""))
         if text.casefold() in NOTHING:
             return None
@@ -90,6 +92,8 @@ class TableRow:
         except ValueError:
             value = math.nan
         value = abs(value) if magnitude else value
+        if magnitude and value == 0:  # a wall that was not pushed to that side
+            return None
         if not (math.isfinite(value) and value > 0):
             raise SceneError(self.key(column), "must be a number above 0", text)
         units = units_of(column)

@@ -608,6 +608,12 @@ def test_conflicting_columns_of_one_name_are_refused(tmp_path: Path) -> None:
         read_folder(with_column(tmp_path, "L [m]", "1.5"))
 
 
+def test_unread_columns_may_have_one_name(tmp_path: Path) -> None:
+    """A drift in % beside a displacement in mm was once refused, with the request to leave one of them empty."""
+    write_folder(tmp_path, f"{GRANITE},2.1,27", heads=HEADS + ',"dmax,+ [%]","dmax,+ [mm]"')
+    assert len(read_folder(tmp_path)) == 1
+
+
 @pytest.mark.parametrize(("head", "cell"), [("L [m]", ""), ("L [mm]", "1000")])
 def test_empty_or_equal_duplicate_column_changes_nothing(head: str, cell: str, tmp_path: Path) -> None:
     (wall,) = read_folder(with_column(tmp_path, head, cell))
@@ -687,6 +693,7 @@ def test_force_of_the_other_side_may_be_signed(tmp_path: Path) -> None:
     """Tables give ``Vmax,-`` as a magnitude or as a signed force; the force of the first side is positive."""
     row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,,", ",61,-43,")
     assert one(tmp_path, row).peaks == (61e3, 43e3)
+    assert one(tmp_path, row.replace(",-43,", ",0,")).peaks == (61e3,)  # not pushed to that side
     record = "displacement_mm,force_kN\n0,0\n5,58\n-5,-40\n6,50\n0,0\n"
     cyclic = row.replace("Monotonic", "Cyclic")
     assert read_folder(write_folder(tmp_path, cyclic, curve=record))[0].peaks == (61e3, 43e3)
