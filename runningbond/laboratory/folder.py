@@ -15,15 +15,15 @@ from matplotlib.image import imread
 from runningbond.scene import Array, SceneError
 
 from .measured import CYCLIC, MONOTONIC, SWING, MeasuredWall
-from .table_row import NAME, NOTHING, TableRow
+from .table_row import MINUS, NAME, NOTHING, TableRow
 
 DATA = Path(__file__).parent / "data"
 SHIPPED = (DATA / "dry", DATA / "mortared")
 HEADS = ["displacement_mm", "force_kN"]
 CURVE, SCENE, CRACKS = ENDINGS = (".csv", ".toml", "-cracks.png")
 SEPARATORS = ",;\t"
-COMMENT = re.compile(r"#(?!(N/A|NV|DIV/0!|VALUE!|REF!|NUM!|NAME\?|NULL!)\s*([,;\t]|$))", re.IGNORECASE)
-"""Beginning of a comment: #, unless it is that of an error value of a spreadsheet."""
+COMMENT = re.compile(r"#(?!(N/A|NV|DIV/0!|VALUE!|REF!|NUM!|NAME\?|NULL!)\s*([,;\t]|$))|sep=.\s*$", re.IGNORECASE)
+"""Beginning of a comment: #, unless it is that of an error value of a spreadsheet; or the spreadsheet's ``sep=;``."""
 
 WRONG_UNIT = 100.0
 """Ratio of the largest force of a curve to that of the table, or its inverse, above which one of them has a wrong
@@ -35,7 +35,7 @@ BETWEEN_MODES = re.compile(r"[,;/+&]|\b(?:and|with)\b|(?<![a-z]{3})[-–—](?![
 DRIFTS = (1e-4, 1.0)
 """Largest displacements of a curve, relative to the actuator's height, at and beyond which their unit is wrong."""
 
-DECIMAL = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
+DECIMAL = re.compile(r"\s*[-+−–]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 
 
 def raised(error: SceneError) -> None:
@@ -277,7 +277,7 @@ def _point(path: Path, line: int, cells: list[str]) -> tuple[float, float]:
     if all(cell.strip().casefold() in NOTHING for cell in cells):
         return math.nan, math.nan
     try:
-        x, y = (float(cell) for cell in cells)
+        x, y = (float(cell.translate(MINUS)) for cell in cells)
     except ValueError:
         x, y = math.inf, math.inf
     if math.isinf(x) or math.isinf(y) or math.isnan(x) != math.isnan(y):

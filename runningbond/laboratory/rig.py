@@ -124,7 +124,7 @@ def _as_stiff_as_under(pressure: float, material: JointMaterial) -> JointMateria
 def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
     row = wall.row
     stone = find_stone(row.key("Stone"), row.text("stone"))
-    if row.text("joints").casefold() not in ("dry", ""):
+    if row.joints not in ("dry", ""):
         raise SceneError(row.key("Joints"), 'must be "Dry"; for others give a scene NAME.toml', row.text("joints"))
     length, thickness, at = row.number("L"), row.number("t"), row.number("H0")
     height, width = row.number("hb"), row.number("lb")

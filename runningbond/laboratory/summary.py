@@ -80,7 +80,7 @@ def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
 
 def kind_of(prediction: Prediction) -> str:
     """Kind of a wall in tables, by its joints: as in the row of the wall, else as in its scene."""
-    return prediction.wall.row.text("joints").casefold() or joints_of(prediction.scene)
+    return prediction.wall.row.joints or joints_of(prediction.scene)
 
 
 def totals(predictions: Sequence[Prediction]) -> list[Total]:

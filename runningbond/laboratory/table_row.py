@@ -9,7 +9,7 @@ from pathlib import Path
 from runningbond.scene import SceneError
 
 LENGTHS, FORCES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"N": 1.0, "kN": 1e3}
-STRESSES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}
+STRESSES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "N/mm²": 1e6, "N/mm2": 1e6}
 KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES)
 """Units of each kind, and their sizes in SI units."""
 
@@ -23,10 +23,14 @@ USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "σ0,pc": "MPa"}
 WORDS = (NAME, "cyclic / monotonic", "joints", "stone", "from test report: failure type")
 """Columns that are read as words."""
 
-NOTHING = ("", "-", "–", "nan", "na", "n/a", "#n/a", "#nv")
+NOTHING = ("", "-", "−", "–", "—", "nan", "na", "n/a", "#n/a", "#nv")
 """Entries that count as empty, in lower case."""
 
-HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)
+HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\]|\((.*)\))?\s*$", re.DOTALL)
+"""A column's name, and its unit in brackets or parentheses."""
+
+MINUS = {ord(sign): "-" for sign in "−–"}
+"""Signs that count as the minus of a number."""
 
 
 def units_of(column: str) -> dict[str, float]:
@@ -51,7 +55,7 @@ class TableRow:
             parts = HEAD.match(head.strip().lstrip("\ufeff"))
             assert parts is not None  # it matches any text
             name = parts[1].casefold()
-            entry = (cell.strip(), parts[2] or USUAL.get(name, ""))
+            entry = (cell.strip(), parts[2] or parts[3] or USUAL.get(name, ""))
             before = entries.get(name, ("", ""))
             if (name in USUAL or name in WORDS) and entry[0] and before[0] and entry != before:
                 what = f"is in another column as well, as {' '.join(before).strip()}; leave one of them empty"
@@ -60,6 +64,12 @@ class TableRow:
         if any(cell.strip() for cell in cells[len(heads) :]):
             raise SceneError(row.place, f"must have {len(heads)} entries, as its heads; has {len(cells)}")
         return row
+
+    @property
+    def joints(self) -> str:
+        """Kind of its joints, such as "dry", in lower case; empty if it is not told."""
+        said = self.text("joints").casefold()
+        return "" if said in NOTHING else said.partition(" joint")[0]
 
     @property
     def place(self) -> str:
@@ -88,14 +98,15 @@ class TableRow:
         if text.casefold() in NOTHING:
             return None
         try:
-            value = float(text)
+            value = float(text.translate(MINUS))
         except ValueError:
             value = math.nan
         value = abs(value) if magnitude else value
         if magnitude and value == 0:  # a wall that was not pushed to that side
             return None
         if not (math.isfinite(value) and value > 0):
-            raise SceneError(self.key(column), "must be a number above 0", text)
+            comma = ", with a decimal point and no other separators" if "," in text else ""
+            raise SceneError(self.key(column), f"must be a number above 0{comma}", text)
         units = units_of(column)
         if unit not in units:
             raise SceneError(self.key(column), f"must have a unit, one of {', '.join(units)}", unit)

@@ -35,6 +35,13 @@ KEYS = {
 }
 
 
+def test_joints_of_one_kind_are_summed_up_under_one_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write_folder(tmp_path / "walls", GRANITE, SANDSTONE.replace("Dry", "Dry joints"))
+    arguments = ["--data", str(folder), "--out", str(tmp_path / "out"), "--models", "rocking", "--json"]
+    assert command(["validate", *arguments]) == 0
+    assert printed(capsys)["summary"]["dry"]["rocking"]["walls"] == 2
+
+
 @pytest.fixture
 def walls(tmp_path: Path) -> list[str]:
     return ["--data", str(write_folder(tmp_path / "walls", GRANITE, SANDSTONE)), "--out", str(tmp_path / "out")]

@@ -145,6 +145,32 @@ def test_load_is_read_from_names_with_and_without_other_numbers(tmp_path: Path, 
     assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", name).replace("179.8", ""))) == 175e3
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "heads"),
+    [
+        ("Dry", "Dry joints", HEADS),
+        ("Dry", "dry joint", HEADS),
+        ("Dry", "–", HEADS),
+        ("", "", HEADS.replace("[", "(").replace("]", ")")),
+        ("1325", "1.325", HEADS.replace("H0 [mm]", "H0 (m)")),
+        (",61,,", ",61,−43,", HEADS),
+    ],
+)
+def test_usual_spellings_give_the_same_wall(old: str, new: str, heads: str, tmp_path: Path) -> None:
+    (tmp_path / "usual").mkdir()
+    usual = one(tmp_path / "usual", GRANITE.replace(",61,,", ",61,-43,") if "43" in new else GRANITE)
+    (wall,) = read_folder(write_folder(tmp_path / "other", GRANITE.replace(old, new), heads=heads))
+    assert wall.peaks == usual.peaks
+    assert _tables(wall, ALL) == _tables(usual, ALL)
+
+
+@pytest.mark.parametrize("unit", ["[N/mm²]", "(N/mm2)", "[MPa]"])
+def test_pressures_may_be_in_newtons_per_square_millimetre(unit: str, tmp_path: Path) -> None:
+    row = f"{GRANITE.replace('WS.175', 'wall').replace('179.8', '')},0.875"
+    (wall,) = read_folder(write_folder(tmp_path, row, heads=f'{HEADS},"σ0,pc {unit}"'))
+    assert vertical_load(wall) == pytest.approx(175e3)
+
+
 def test_extra_columns_other_table_names_and_missing_entries_are_accepted(tmp_path: Path) -> None:
     heads = "Note," + HEADS + ",More"
     wall = read_folder(write_folder(tmp_path, f"x,{SANDSTONE}", heads=heads, table="hidden-walls.csv"))[0]
@@ -331,6 +357,11 @@ def test_cyclic_walls_are_pushed_to_alternating_sides() -> None:
     ("row", "said"),
     [
         (GRANITE.replace(",1000,", ",long,"), "tests.csv, line 2: L = 'long': must be a number above 0"),
+        (
+            GRANITE.replace("1325", '"1,325"'),
+            "H0 = '1,325': must be a number above 0, with a decimal point and no other",
+        ),
+        (GRANITE.replace("1325", ""), "WS.175: tests.csv, line 2: H0: is missing; it must be a number above 0"),
         (GRANITE.replace(",1000,", ",-1,"), "tests.csv, line 2: L = '-1': must be a number above 0"),
         (GRANITE.replace(",1000,", ",inf,"), "tests.csv, line 2: L = 'inf': must be a number above 0"),
         (GRANITE.replace(",1000,", ",,"), "tests.csv, line 2: L: is missing"),
@@ -419,6 +450,9 @@ def test_invalid_curve_is_refused(tmp_path: Path, curve: str, said: str) -> None
         lambda text: text.replace(",", ";").replace(".5", ",5"),
         lambda text: text.replace("\n", "\r\n"),
         lambda text: "\ufeff" + text,
+        lambda text: "sep=;\r\n" + text.replace(",", ";").replace(".5", ",5"),
+        lambda text: text.replace("-", "−"),
+        lambda text: text.replace(",", ";").replace(".5", ",5").replace("-", "−"),
         lambda text: "# measured; in, 2005\n\n" + text.replace("\n1.5", "\n# a pause\n1.5") + "# end\n",
     ],
 )
