@@ -143,12 +143,13 @@ def _parameters(one: Prediction) -> Sheet:
 
 
 def _numbers(part: Any) -> Iterator[tuple[str, float]]:
-    """Numbers of a material and of its parts that differ from their defaults, by key."""
+    """Numbers of a material and its parts that are not the defaults, by key; of a joint that crushes C_ss as well."""
+    crushes = getattr(part, "compressive_strength", None) is not None
     for entry in fields(part):
         value = getattr(part, entry.name)
         if is_dataclass(value):
             yield from ((f"{entry.name}.{key}", number) for key, number in _numbers(value))
-        elif isinstance(value, float) and value != entry.default:
+        elif isinstance(value, float) and (value != entry.default or (crushes and entry.name == "cap_shear")):
             yield entry.name, value
 
 

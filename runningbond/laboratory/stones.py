@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from runningbond.pictures.sheet import Sheet
-from runningbond.scene import SceneError
+from runningbond.scene import JointMaterial, SceneError
 from runningbond.scene.ranges import suggestion
 
 UNIT_WEIGHT = 20e3
@@ -129,6 +129,7 @@ def sources() -> Sheet:
             [name, "stiffest joint [MPa/m]", "E_b / h_b", f"E_b = {stone.young / 1e9:g} GPa, of blocks"],
             [name, "shear stiffness", "k(σ₀) / (2 (1 + ν))", f"isotropy, ν = {POISSON:g}"],
             [name, "strength of joints in compression [MPa]", f"{stone.prism / 1e6:g}", "prisms"],
+            [name, "C_ss of their cap, p² + C_ss τ² ≤ f_m²", f"{JointMaterial.cap_shear:g}", "default for mortar"],
             [
                 name,
                 "f_t of blocks [MPa]",

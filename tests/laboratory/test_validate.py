@@ -339,6 +339,16 @@ def test_cyclic_wall_without_a_record_is_said_to_be_pushed_to_one_side(
     assert (page.count("pushed to one side;"), page.count("pushed to and fro;")) == (1, 1)
 
 
+@pytest.mark.parametrize(("model", "crushes"), [("limit", False), ("limit-crushing", True)])
+def test_page_lists_the_shape_of_the_cap_of_joints_that_crush(model: str, crushes: bool, tmp_path: Path) -> None:
+    """C_ss is a default for dry joints, and was once listed nowhere."""
+    folder, out = write_folder(tmp_path / "walls", SANDSTONE), tmp_path / "out"
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", model, "--jobs", "1"]) == 0
+    page = (out / "laboratory.md").read_text()
+    assert ("| joint.cap_shear | 9 |" in page) == crushes
+    assert "C_ss of their cap" in page
+
+
 def test_picture_of_a_wall_with_a_space_in_its_name_is_linked(tmp_path: Path) -> None:
     folder, out = write_folder(tmp_path / "walls", GRANITE.replace("WS.175", "Wand (Süd)")), tmp_path / "out"
     arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]
