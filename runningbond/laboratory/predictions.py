@@ -108,7 +108,7 @@ class Prediction:
         return self.mode in known if self.mode and known else None
 
     def row(self) -> dict[str, Any]:
-        """Its scores, under the names that the command line prints."""
+        """Its scores, and the values in SI units that they compare, under the names that the command line prints."""
         test = marks_of(self.wall.curve, cyclic=self.wall.is_cyclic, side=self.wall.side)
         own, outcome = self.marks, self.outcome
         over = {
@@ -120,6 +120,11 @@ class Prediction:
                 ("residual_ratio", "residual"),
             )
         }
+        values = {
+            f"{key}{end}": getattr(marks, key, None)
+            for key in ("stiffness", "at_peak", "at_loss", "residual")
+            for end, marks in (("", own), ("_measured", test))
+        }
         energy = energy_ratio(own.loops, test.loops) if own and test else None
         return {
             "wall": self.wall.name,
@@ -128,6 +133,7 @@ class Prediction:
             "V_max": self.strength,
             "V_measured": self.wall.peak,
             "dV": self.error,
+            **values,
             **over,
             "energy_ratio": energy,
             "cycle_ratio": self._cycles(),

@@ -165,6 +165,18 @@ def test_wall_pushed_to_the_left_is_scored_as_its_mirror_image(
         assert found[1][key] == pytest.approx(found[3][key], rel=0.01)
 
 
+def test_scores_come_with_the_values_that_they_compare(tmp_path: Path) -> None:
+    """In N and m; ratios alone do not tell how far a wall went."""
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE))
+    rung, curve = LADDER["rigid"], np.array([(0.0, 0.0), (1e-3, 33e3), (0.02, 66e3), (0.04, 33e3)])
+    row = Prediction(wall, rung, scene_of(wall, rung.features), Outcome("", "", "collapse", 66e3, curve=curve)).row()
+    assert (row["V_max"], row["at_peak"], row["at_loss"]) == pytest.approx((66e3, 0.02, 0.028))
+    assert (row["V_measured"], row["at_peak_measured"]) == pytest.approx((61e3, 0.01))
+    assert (row["at_loss_measured"], row["residual"]) == (None, None)
+    assert row["stiffness"] / row["stiffness_measured"] == pytest.approx(row["stiffness_ratio"])
+    assert row["stiffness_measured"] == pytest.approx(30e6)
+
+
 @pytest.mark.parametrize("rest", [0.1, 0.0, -0.1])
 def test_cycles_to_the_left_are_compared_whatever_the_unloading_point(rest: float, tmp_path: Path) -> None:
     """The record is mirrored; an outcome that is positive along its first move is not mirrored again."""
