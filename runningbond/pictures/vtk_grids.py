@@ -54,10 +54,12 @@ class GridBuilder:
             displacement = _moved(blocks, owner, points, frame)
             grid = _grid(points, [(POLYGON, np.arange(len(points)), np.diff(blocks.first))])
         else:
-            block, displacement = triangles.block, frame.displacement
-            owner = np.empty(len(triangles.points), dtype=np.int64)
+            block, owner = triangles.block, np.empty(len(triangles.points), dtype=np.int64)
             owner[triangles.corners.ravel()] = np.repeat(block, 3)
             points = self._near(triangles.points, owner)
+            # The ground is rigid and shown up to other points than its nodes, which may move differently if it turns.
+            deforms, rigid = self._scene.wall[owner], _moved(blocks, owner, points, frame)
+            displacement = np.where(deforms[:, None], frame.displacement, rigid)
             grid = _grid(points, [(TRIANGLE, triangles.corners.ravel(), np.full(len(block), 3))])
         velocity = carried(blocks, owner, points, frame.velocity)
         if frame.finite:  # lever arms refer to the displaced position

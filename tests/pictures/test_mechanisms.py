@@ -8,6 +8,7 @@ import pytest
 from matplotlib.text import Text
 
 from dem.static import dem_static
+from meshing import wall_mesh
 from runningbond.compare.published import published_scene
 from runningbond.joints import wall_points
 from runningbond.limit import limit
@@ -16,14 +17,14 @@ from runningbond.models import run_model
 from runningbond.pictures.captions import mechanism_caption, to_png
 from runningbond.pictures.curve import curve_figure
 from runningbond.pictures.flat import figure_of
-from runningbond.pictures.frame import Discretisation, Frame
+from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import VISIBLE_JUMP, JointState
 from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape, mechanism_warning, outcome_check
 from runningbond.pictures.style import CRUSHED
 from runningbond.pictures.vtk_grids import GridBuilder, shape_of_grids
 from runningbond.results import Outcome, check_mechanism
-from runningbond.results.mechanism import MAX_OVERLAP
+from runningbond.results.mechanism import MAX_OVERLAP, carried
 from runningbond.scene import Array, Scene, scene_from_dict
 from tests.at_length import at_length
 from tests.fem_interface.walls import MORTAR
@@ -186,7 +187,8 @@ def test_title_is_not_parsed_as_formula(title: str) -> None:
         assert [each for each in texts if title in each.get_text() and not each.get_parse_math()]
 
 
-def test_frame_of_file_contains_support_motion() -> None:
+@pytest.mark.parametrize("of", ["polygons", "triangles"])
+def test_frame_of_file_contains_support_motion(of: str) -> None:
     """A support that translates and rotates, to first order; its far corners are cut off in the file."""
     scene = scene_from_dict(turning_support())
     motion = scene.support_motion
@@ -194,6 +196,10 @@ def test_frame_of_file_contains_support_motion() -> None:
     discretisation = Discretisation.of_rigid_blocks(scene)
     nothing = np.zeros(len(discretisation.points))
     frame = Frame(1.0, motion, nothing, nothing, nothing, nothing, nothing.astype(np.int64))
+    if of == "triangles":
+        mesh = wall_mesh(scene)
+        discretisation = replace(discretisation, triangles=Triangles(mesh.points, mesh.triangles, mesh.triangle_block))
+        frame = replace(frame, displacement=carried(scene.blocks, mesh.block, mesh.points, motion))
     grids = GridBuilder(discretisation)
     read = shape_of_grids(scene, grids.blocks(frame), grids.joints(frame))
     assert read.motion == pytest.approx(motion, rel=1e-5, abs=1e-8)
