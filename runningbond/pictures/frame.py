@@ -53,6 +53,8 @@ class Frame:
         0 sound … 1 broken; zero if not given.
     displacement : (nn, 2) float
         Displacement of the nodes of the triangles [m]; empty for rigid blocks.
+    sides : (2, np, 2) float
+        Displacement of the joint points on block a and on block b [m]; empty for rigid blocks.
     stress : (nt, 3) float
         σ_x, σ_y, τ_xy of the triangles [Pa]; empty for rigid blocks.
     time
@@ -73,6 +75,7 @@ class Frame:
     velocity: Array = field(default_factory=lambda: np.zeros((0, 3)))
     damage: Array = field(default_factory=lambda: np.zeros(0))
     displacement: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    sides: Array = field(default_factory=lambda: np.zeros((0, 0, 2)))
     stress: Array = field(default_factory=lambda: np.zeros((0, 3)))
     time: float | None = None
     traction: Array = field(default_factory=lambda: np.zeros((0, 2)))
@@ -92,4 +95,5 @@ class Frame:
             opening=factor * self.opening,
             slip=factor * self.slip,
             displacement=factor * self.displacement,
+            sides=factor * self.sides,
         )

@@ -188,11 +188,13 @@ class MotionRecorder(SeriesRecorder):
         motion, velocity = run.system.motion_of_bodies(state.motion), run.system.motion_of_bodies(state.velocity)
         finite = run.system.contacts is not None
         displacement, traction, stress = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3))
+        sides = np.zeros((0, 0, 2))
         if self._wall is not None:
             displacement, stress = self._wall.displacement(state.motion), stresses(self._wall, state.motion)
+            displacement = self._far_displacement(self._wall, displacement, motion) if finite else displacement
+            sides = self._wall.elements.sides(displacement)
         if finite:
-            displacement = self._far_displacement(displacement, motion)
-            opening, slip = self._far_jumps(displacement, motion)
+            opening, slip = self._far_jumps(sides, motion)
             traction = run.pulls_at_joints(state).T / wall.points.area[:, None]
         return Frame(
             multiplier,
@@ -205,29 +207,29 @@ class MotionRecorder(SeriesRecorder):
             velocity,
             damage,
             displacement,
+            sides,
             stress,
             traction=traction,
             finite=finite,
         )
 
-    def _far_displacement(self, displacement: Array, motion: Array) -> Array:
+    @staticmethod
+    def _far_displacement(wall: ModalWall, displacement: Array, motion: Array) -> Array:
         """Nodal displacements ``(nn, 2)`` [m] at finite displacements; deformations rotate with their blocks."""
-        if self._wall is None:
-            return displacement
-        blocks, block, at = self._wall.scene.blocks, self._wall.mesh.block, self._wall.mesh.points
+        blocks, block, at = wall.scene.blocks, wall.mesh.block, wall.mesh.points
         own = displacement - carried(blocks, block, at, motion)
         return turned(blocks, block, at, motion) + rotated(own, motion[block, 2])
 
-    def _far_jumps(self, displacement: Array, motion: Array) -> tuple[Array, Array]:
-        """Opening and slip ``(np,)`` [m] at finite displacements.
+    def _far_jumps(self, sides: Array, motion: Array) -> tuple[Array, Array]:
+        """Opening and slip ``(np,)`` [m] at finite displacements, between the `sides` of deformable blocks.
 
         The jumps of the joint law cannot be used: they refer to the sides in contact and are missing if these parted.
         """
         scene, points = self.discretisation.scene, self.discretisation.points
-        if self._wall is None:
-            a, b = (turned(scene.blocks, side, points.position, motion) for side in points.block.T)
+        if len(sides):
+            a, b = sides
         else:
-            a, b = self._wall.elements.sides(displacement)
+            a, b = (turned(scene.blocks, side, points.position, motion) for side in points.block.T)
         normal, tangent = turned_frames(points, motion)
         return ((b - a) * normal).sum(axis=1), ((b - a) * tangent).sum(axis=1)
 

@@ -96,16 +96,15 @@ class GridBuilder:
         traction = frame.normal[:, None] * normal + frame.tangential[:, None] * tangent
         if len(frame.traction):
             traction = frame.traction
-        # For deformable blocks, the part of the jump not due to rigid motions is split evenly between the sides.
-        a, b = (_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T)
-        share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
+        a, b = self._sides(frame)
+        share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)[:, None]
         # Pieces that meet at a point share its area. Only mid-lines carry it, or sums would count it three times.
         area = (points.area / np.maximum(np.bincount(pair.ravel(), minlength=len(points)), 1))[at]
         area = area * np.tile([1.0, 1.0, 0.0, 0.0, 0.0, 0.0], n)
         _add(
             grid.point_data,
             {
-                DISPLACEMENT: _in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
+                DISPLACEMENT: _in_space(a[at] + share * (b - a)[at]),
                 "normal": _in_space(normal[at]),
                 "jump [m]": _in_space(jump[at]),
                 "opening [m]": frame.opening[at],
@@ -123,6 +122,13 @@ class GridBuilder:
         _add(grid.cell_data, {"joint": joint, "inner": inner.astype(np.uint8), "state": state.astype(np.uint8)})
         _add(grid.field_data, _moment(frame))
         return grid
+
+    def _sides(self, frame: Frame) -> Array:
+        """Displacements of the joint points on sides a and b in a frame, ``(2, np, 2)`` [m]."""
+        if len(frame.sides):
+            return frame.sides
+        points = self._points
+        return np.array([_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T])
 
     @cached_property
     def _pieces(self) -> Indices:

@@ -166,6 +166,26 @@ def test_jumps_are_relative_displacements_at_large_rotation(model: str) -> None:
             assert np.abs(shown[(place == at).all(axis=1)] - jump).max() < 1e-5
 
 
+@pytest.mark.parametrize("displacements", ["small", "finite"])
+def test_sides_of_joints_lie_on_faces_of_deformed_blocks(displacements: str) -> None:
+    """Soft blocks shorten by .1 mm under their weight: corners of quadrilaterals go where the blocks' corners go."""
+    scene = courses([[1], [1], [1]], joint=STIFF, block={"density": 2000.0, "young": 1e7, "poisson": 0.2})
+    recorder = motion_recorder(scene, None)
+    run_model("fem", scene, 0.3, recorder, displacements=displacements)
+    grids, frame = GridBuilder(recorder.discretisation), recorder.frames[0]
+    blocks, joints = grids.blocks(frame), grids.joints(frame)
+    place, moved = (np.asarray(values)[:, :2] for values in (blocks.points, blocks.point_data[DISPLACEMENT]))
+    assert np.abs(moved).max() > 1e-4
+    quads = joints.cells_dict[9]
+    for quad, joint in zip(quads, joints.cell_data["joint"][-len(quads) :], strict=True):
+        for side, block in zip((quad[:2], quad[2:]), scene.joints.block[joint], strict=True):
+            nodes = np.unique(blocks.cells_dict[5][blocks.cell_data["block"] == block])
+            for at, way in zip(joints.points[side, :2], joints.point_data[DISPLACEMENT][side, :2], strict=True):
+                here = nodes[np.hypot(*(place[nodes] - at).T) < 1e-9]
+                assert np.abs(moved[here] - way).max(initial=0.0) < 1e-12
+                assert len(here) or scene.fixed[block]  # the ground has no nodes under the wall
+
+
 def test_shape_of_fall_has_visible_size() -> None:
     """Its farthest corner has moved by nearly a tenth of the wall's size, whatever the final displacement."""
     scene = tower()
