@@ -104,7 +104,9 @@ class PassedOn(Action):
     def control(self, scene: Scene) -> tuple[Indices, Array, Array]:
         """The load's control point on whole blocks, with the pieces that touch it."""
         blocks, at, direction = self.load.control(self.wall)
-        return np.concatenate([self._bearing(scene, block, at) for block in blocks]), at, direction
+        touching = [self._bearing(scene, block, point) for block, point in zip(blocks, at, strict=True)]
+        count = [len(near) for near in touching]
+        return np.concatenate(touching), np.repeat(at, count, axis=0), np.repeat(direction, count, axis=0)
 
     def _bearing(self, scene: Scene, block: int, at: Array) -> Indices:
         """The pieces that carry a force on a block: those that touch its point, or the nearest one if none does."""

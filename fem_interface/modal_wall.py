@@ -200,13 +200,14 @@ class ModalWall:
     def control_row(self) -> Array:
         """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`.
 
-        It is averaged over the blocks that have the point, and for each block over the pieces there.
+        It is averaged over the points of blocks, and at each point over the pieces there.
         """
         held, at, direction = self.scene.control_point
-        owner, times = self.pieces.owner[held], np.bincount(self.pieces.owner[held])
-        share = 1 / (times[owner] * np.count_nonzero(times))
-        rows = [s * self.displacement_row(int(b), at, direction) for s, b in zip(share, held, strict=True)]
-        return np.asarray(sum(rows))
+        places = np.column_stack([self.pieces.owner[held], at])
+        _, place, times = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+        share = 1 / (times[place.ravel()] * len(times))
+        rows = zip(share, held, at, direction, strict=True)
+        return np.asarray(sum(part * self.displacement_row(int(block), *point) for part, block, *point in rows))
 
 
 def element_runs(wall: ModalWall) -> tuple[Indices, Indices]:

@@ -153,8 +153,7 @@ def _carried(scene: Scene, drawn: Scene) -> Scene:
         if not forces.moment.any() and np.array_equal(there, forces.at):
             return load
         block, at, direction = load.control(scene)
-        place = moved(block, np.tile(at, (len(block), 1))).mean(axis=0)
-        return GivenForces(replace(forces, at=there), (block, place, direction))
+        return GivenForces(replace(forces, at=there), (block, moved(block, at), direction))
 
     live, dead = (tuple(map(on_blocks, loads)) for loads in (scene.load.live, scene.load.dead))
     return replace(

@@ -54,7 +54,7 @@ STATIONARY_PART = 0.01
 """Largest displacement of a control point that stays in place, relative to the path of the farthest-moving blocks."""
 
 ControlPoint: TypeAlias = tuple[Indices, Array, Array]
-"""Blocks ``(n,)``, point and direction ``(2,)`` of a displacement, as in `Scene.control_point`."""
+"""Blocks ``(n,)``, a point of each and a direction there, both ``(n, 2)``, as in `Scene.control_point`."""
 
 
 def finite_run(system: BlockSystem, scene: Scene) -> Run:
@@ -107,7 +107,7 @@ class Push(Lead):
 
     def _control(self, motion: Array) -> float:
         block, at, direction = self.elsewhere or self.scene.control_point
-        return float(((self._places(block, np.tile(at, (len(block), 1)), motion) - at) @ direction).mean())
+        return float(((self._places(block, at, motion) - at) * direction).sum(axis=1).mean())
 
     def _places(self, block: Indices, at: Array, motion: Array) -> Array:
         """Positions of points of blocks ``(n,)``, ``(n, 2)`` [m], after a motion ``(nd,)``, ``(n, 2)`` [m]."""
@@ -121,7 +121,7 @@ class Push(Lead):
         """Note on where displacements are read, if the control point stays in place."""
         if self.elsewhere is None:
             return ""
-        where = self.scene.blocks.place(self.elsewhere[1])
+        where = self.scene.blocks.place(self.elsewhere[1][0])
         return f"displacements are read at {where}, for the control point of the first live load stays where it is"
 
     def _read_where_it_moves(self, traverse: Traverse, motions: list[Array]) -> None:
@@ -143,9 +143,9 @@ class Push(Lead):
         yield from points
         owner, corner = self.scene.blocks.owner, self.scene.blocks.vertices
         gone = self._places(owner, corner, motion) - self._places(owner, corner, self.start.motion)
-        for _, _, direction in points:
+        for _, _, (direction, *_) in points:
             farthest = int(np.abs(gone @ direction).argmax())
-            yield owner[[farthest]], corner[farthest], direction
+            yield owner[[farthest]], corner[[farthest]], direction[None]
 
     @cached_property
     def _load(self) -> float:

@@ -38,7 +38,7 @@ class Rig(NamedTuple):
         beam = scene.beam
         if beam is None or beam.block is None or not scene.drive_path:
             return None
-        _, at, _ = scene.load.live[0].control(scene)
+        _, (at, *_), _ = scene.load.live[0].control(scene)
         force = np.array(beam.force) * (beam.force_line == "fixed")
         arm = at - scene.blocks.centroid[beam.block]
         return cls(rigid[beam.block].astype(np.uint64), arm, force, np.zeros(1))

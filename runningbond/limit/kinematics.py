@@ -96,9 +96,8 @@ def movable_freedoms(scene: Scene) -> Indices:
 def control_row(scene: Scene) -> Array:
     """Operator of the control point's displacement along the live load, per motion of the blocks, ``(3 nb,)``."""
     block, at, direction = scene.control_point
-    n = len(block)
-    rows = point_operator(block, np.tile(at, (n, 1)), np.tile(direction, (n, 1)), scene.blocks.centroid)
-    return np.asarray(rows.T @ np.full(n, 1 / n), dtype=np.float64)
+    rows = point_operator(block, at, direction, scene.blocks.centroid)
+    return np.asarray(rows.T @ np.full(len(block), 1 / len(block)), dtype=np.float64)
 
 
 def sliding_dilates(scene: Scene, motion: Array) -> bool:

@@ -55,16 +55,17 @@ class Action:
         return tuple(arrows)
 
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
-        """Blocks ``(n,)`` whose displacement is averaged at the control point, this point, and a direction ``(2,)``.
+        """Blocks ``(n,)``, a point of each and a direction there, both ``(n, 2)``: their mean displacement is recorded.
 
-        The control point is where the first point force on a movable block acts. Without such a force it is, of the
-        highest corners that can move, the one farthest along the load (the paper's upper corner on the pushed side).
+        The control point, one for all blocks that share it, is where the first point force on a movable block acts.
+        Without such a force it is, of the highest corners that can move, the one farthest along the load (the paper's
+        upper corner on the pushed side).
         """
         arrows = self.arrows(scene)
         for arrow in arrows:
             movable = arrow.block[~scene.fixed[arrow.block]]
             if arrow.at is not None and len(movable):
-                return movable, arrow.at, arrow.direction
+                return same_for(movable, arrow.at, arrow.direction)
         direction = arrows[-1].direction if arrows else np.array([1.0, 0.0])
         blocks, gravity = scene.blocks, scene.load.gravity
         up = -unit_vector(np.array(gravity)) if any(gravity) else np.array([0.0, 1.0])
@@ -72,12 +73,17 @@ class Action:
         height = blocks.vertices[corners] @ up
         top = corners[height >= height.max() - blocks.tolerance]
         corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
-        return blocks.owner[corner], blocks.vertices[corner[0]], direction
+        return same_for(blocks.owner[corner], blocks.vertices[corner[0]], direction)
 
     @classmethod
     def read(cls, table: Table) -> "Action":
         """Read the load from a table of a scene file, whose keys are vectors named like the fields of the dataclass."""
         return cls(**{name: table.vector(name) for name in get_type_hints(cls)})
+
+
+def same_for(block: Indices, at: Array, direction: Array) -> tuple[Indices, Array, Array]:
+    """`Action.control` of blocks ``(n,)`` that have one point ``(2,)`` and one direction ``(2,)`` in common."""
+    return block, np.tile(at, (len(block), 1)), np.tile(direction, (len(block), 1))
 
 
 def nonzero_vector(key: str, value: Any) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from .actions import Action, nonzero_vector, unit_vector
+from .actions import Action, nonzero_vector, same_for, unit_vector
 from .arrays import Array, Indices
 from .errors import SceneError
 from .forces import Arrow, Forces
@@ -247,7 +247,7 @@ class LineLoad(Action):
         reach = scene.blocks.tolerance / self._length
         there = (share[:, 0] <= 0.5 + reach) & (share[:, 1] >= 0.5 - reach)
         middle = np.add(self.start, self.end) / 2
-        return np.unique(block[there]), np.asarray(middle), unit_vector(np.array(self.force))
+        return same_for(np.unique(block[there]), np.asarray(middle), unit_vector(np.array(self.force)))
 
 
 @dataclass(frozen=True)
@@ -286,6 +286,19 @@ class Moment(Action):
         low, high = scene.blocks.extent(int(block[0]))
         x = low[0] if self.moment > 0 else high[0]
         return (Arrow(np.array([0.0, -1.0]), np.array([x, high[1]]), block),)
+
+    def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
+        """The block's two corners farthest apart, as they move if it turns with the moment.
+
+        Their mean displacement does not depend on the centre of rotation, which may be any single point.
+        """
+        block = self._blocks(scene)
+        corners = scene.blocks.polygon(int(block[0]))
+        apart = corners[:, None] - corners
+        length = np.hypot(*apart.transpose(2, 0, 1))
+        ends = np.array(np.unravel_index(length.argmax(), length.shape))
+        x, y = unit_vector(corners[ends[0]] - corners[ends[1]]) * np.sign(self.moment)
+        return np.repeat(block, 2), corners[ends], np.array([[-y, x], [y, -x]])
 
     def _blocks(self, scene: "Scene") -> Indices:
         touching = scene.blocks.containing(np.array(self.at))

@@ -148,11 +148,11 @@ class Settlement(Action):
         size = np.hypot(*move.T)
         share = np.round(size / size.max(), 9)  # of ends that move equally far, rounding errors do not choose
         k = 0 if share[0] > STATIONARY else int(share.argmax())
-        return block[[k]], at[k], move[k] / size[k]
+        return block[[k]], at[[k]], move[[k]] / size[k]
 
     def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
         """An arrow at the moving ground."""
-        block, at, direction = self.control(scene)
+        block, (at,), (direction,) = self.control(scene)
         return (Arrow(direction, at, block),)
 
 

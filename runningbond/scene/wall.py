@@ -309,7 +309,7 @@ class Scene:
 
     @cached_property
     def control_point(self) -> tuple[Indices, Array, Array]:
-        """Blocks, point and direction for which displacements are recorded: those of the first live load."""
+        """Blocks, points and directions whose mean displacement is recorded: those of the first live load."""
         return self.load.live[0].control(self)
 
     @cached_property

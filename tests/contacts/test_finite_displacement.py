@@ -398,7 +398,7 @@ def test_arch_follows_the_linkage_of_its_three_links() -> None:
     hinged = (0, 2, 4, 5)
     hinge = np.array([joints[j, k % 2] for k, j in enumerate(hinged)])  # inner and outer ends in turn
     links = [(scene.blocks.area[a:b], scene.blocks.centroid[a:b]) for a, b in pairwise(hinged)]
-    _, at, direction = scene.control_point
+    _, (at,), (direction,) = scene.control_point
     assert direction == pytest.approx([1, 0])
     exact = []
     for spin in -np.linspace(0.0, 0.05, 51):

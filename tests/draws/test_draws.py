@@ -132,9 +132,9 @@ def test_control_point_of_draws_stays_on_its_blocks(load: dict[str, Any]) -> Non
         there, place, sense = drawn.control_point
         assert np.array_equal(there, block)
         assert np.array_equal(sense, direction)
-        (x0, y0), (x1, y1) = drawn.blocks.boxes[0][block[0]], drawn.blocks.boxes[1][block[0]]
-        share = (at - low[block[0]]) / (high - low)[block[0]]
-        assert place == pytest.approx([x0 + share[0] * (x1 - x0), y0 + share[1] * (y1 - y0)])
+        drawn_low, drawn_high = drawn.blocks.boxes
+        share = (at - low[block]) / (high - low)[block]
+        assert place == pytest.approx(drawn_low[block] + share * (drawn_high - drawn_low)[block])
 
 
 def test_pins_and_ties_stay_on_their_blocks_for_any_sizes() -> None:

@@ -40,9 +40,10 @@ def slender(live: dict[str, Any] | list[dict[str, Any]]) -> Scene:
 
 
 def angles(curve: Array, at: Array, direction: Array) -> Array:
-    """Rotations at which a point of the block has the displacements of a curve in a direction."""
+    """Rotations at which points of the block ``(n, 2)`` have the mean displacements of a curve in directions."""
     every = np.linspace(0.0, math.atan(WIDTH / HEIGHT) + 0.05, 2000)
-    gone = [(about_its_toe(at, angle) - (at - TOE)) @ direction for angle in every]
+    ways = list(zip(at, direction, strict=True))
+    gone = [np.mean([(about_its_toe(here, angle) - (here - TOE)) @ way for here, way in ways]) for angle in every]
     return np.interp(curve[:, 0], gone, every)
 
 
@@ -62,7 +63,7 @@ def test_lateral_push_of_block_follows_tan_until_balance_on_corner(model: Any) -
     """λ = tan(α − θ), tan α = b / h; zero once the corner above the toe has moved by h sin α."""
     outcome = model(slender({"kind": "lateral"}), 0.005, displacements="finite")
     corner, alpha = np.array([WIDTH, HEIGHT]), math.atan(WIDTH / HEIGHT)
-    follows(outcome, np.tan(alpha - angles(outcome.curve, corner, np.array([1.0, 0.0]))))
+    follows(outcome, np.tan(alpha - angles(outcome.curve, corner[None], np.array([[1.0, 0.0]]))))
     assert f"falls to nothing at {HEIGHT * math.sin(alpha):.4g} m" in outcome.message
     assert outcome.curve[-1, 1] <= 0
 
@@ -73,7 +74,7 @@ def test_point_force_follows_its_material_point(model: Any) -> None:
     at, middle, direction = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
     scene = slender({"kind": "point", "at": at.tolist(), "force": direction.tolist()})
     outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
-    turned = angles(outcome.curve, at, direction)
+    turned = angles(outcome.curve, at[None], direction[None])
     exact = [-weight * about_its_toe(middle, angle)[0] / about_its_toe(at, angle)[1] for angle in turned]
     follows(outcome, np.array(exact))
 
@@ -318,7 +319,7 @@ def test_displacements_are_read_at_moving_block(live: Any) -> None:
     """A block at rest has no curve: it is read at the corner of the toppling one, tan(α − θ) or as a force there."""
     outcome, corner = dem_dynamic(slender_and_stout(live), 0.005, displacements="finite"), np.array([0.0, HEIGHT])
     weight, middle = 9.81 * slender({"kind": "lateral"}).mass[0], np.array([WIDTH / 2, HEIGHT / 2])
-    turned = angles(outcome.curve, corner, np.array([1.0, 0.0]))
+    turned = angles(outcome.curve, corner[None], np.array([[1.0, 0.0]]))
     arms = [(about_its_toe(middle, angle), about_its_toe(corner, angle)) for angle in turned]
     at_corner = np.array([-weight * toe[0] / there[1] for toe, there in arms])
     follows(outcome, at_corner if isinstance(live, list) else np.tan(math.atan(WIDTH / HEIGHT) - turned))
@@ -328,7 +329,7 @@ def test_displacements_are_read_at_moving_block(live: Any) -> None:
 
 def test_displacements_return_to_control_point_once_it_moves(monkeypatch: pytest.MonkeyPatch) -> None:
     """A far too fast push has thrown blocks about but left the control point in place; the next push moves it."""
-    after, heel = Push.after, (np.zeros(1, dtype=np.int64), np.zeros(2), np.array([0.0, 1.0]))
+    after, heel = Push.after, (np.zeros(1, dtype=np.int64), np.zeros((1, 2)), np.array([[0.0, 1.0]]))
 
     def astray(lead: Push, traverse: Traverse) -> Push:
         return replace(cast(Push, after(lead, traverse)), elsewhere=heel)

@@ -138,7 +138,7 @@ class ReadLeft(Gust):
 
     def control(self, scene: Scene) -> tuple[Indices, Array, Array]:
         """The first block, at the origin."""
-        return np.array([0]), np.zeros(2), np.array([1.0, 0.0])
+        return np.array([0]), np.zeros((1, 2)), np.array([[1.0, 0.0]])
 
 
 ReadLeft.__name__ = "Gust"

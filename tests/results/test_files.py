@@ -383,7 +383,7 @@ def test_run_is_recorded_up_to_collapse(tmp_path: Path) -> None:
     assert set(loads) == {*rests[:, 1], outcome.upper}
     assert 1 < len(fall) <= 13
     # At rest, the displacement of the control point is that of the curve.
-    block, at, direction = scene.control_point
+    block, (at,), (direction,) = scene.control_point
     corner = np.flatnonzero((scene.blocks.vertices == at).all(axis=1) & (scene.blocks.owner == block[0]))[0]
     for multiplier, grid in zip(loads, grids, strict=True):
         if multiplier != outcome.upper:
@@ -437,7 +437,7 @@ def test_static_states_are_recorded_in_equilibrium(tmp_path: Path) -> None:
     assert np.array_equal(silent.curve, outcome.curve)
     blocks = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
     joints = [read_grid(path) for path in frame_files(tmp_path, "joints")]
-    block, at, direction = scene.control_point
+    block, (at,), (direction,) = scene.control_point
     corner = np.flatnonzero((scene.blocks.vertices == at).all(axis=1) & (scene.blocks.owner == block[0]))[0]
     shown = [
         (

@@ -16,7 +16,7 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.system import system_of
 from homog import homog
 from runningbond.limit import limit
-from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.limit.kinematics import control_row, dead_load, live_load
 from runningbond.results import Outcome
 from runningbond.results.store import load_scene, save_outcome
 from runningbond.scene import (
@@ -79,8 +79,8 @@ def test_user_defined_load_runs_in_every_model() -> None:
     assert homog_refusal(scene).startswith("model homog: has no closed form for this scene: it needs load.live.kind")
     held = tower(load__live=Wind(1.0), support__kind="fixed-first-course")
     assert live_load(held)[0::3] == pytest.approx([0.0, 0.0144, 0.0144])
-    assert held.control_point[1].tolist() == pytest.approx([0.0, 0.18])
-    _, at, direction = scene.control_point
+    assert held.control_point[1][0].tolist() == pytest.approx([0.0, 0.18])
+    _, (at,), (direction,) = scene.control_point
     assert (at.tolist(), direction.tolist()) == ([0.0, 0.06], [1.0, 0.0])
     assert len(scene.load.live[0].arrows(scene)) == 3
 
@@ -223,6 +223,18 @@ def test_moment_arrow_is_on_the_side_that_moves_down(moment: float, x: float) ->
     assert arrow.direction.tolist() == [0.0, -1.0]
 
 
+@pytest.mark.parametrize("moment", [2.0, -2.0])
+@pytest.mark.parametrize("about", [(0.24, 0.06), (0.24, 0.0), (0.48, 0.06), (0.48, 0.0), (-7.0, 3.0)])
+def test_displacement_of_a_moment_is_the_same_about_every_centre(moment: float, about: tuple[float, float]) -> None:
+    """Its rotation times half the diagonal of its block, of .24 × .06 m: above 0, and the work is proportional."""
+    scene = panel(load__live={"kind": "moment", "at": [0.3, 0.03], "moment": moment})
+    (block,) = set(scene.control_point[0].tolist())
+    arm, turn = scene.blocks.centroid[block] - about, 1e-3 * np.sign(moment)
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[block] = -turn * arm[1], turn * arm[0], turn
+    assert control_row(scene) @ motion.ravel() == pytest.approx(1e-3 * np.hypot(0.24, 0.06) / 2)
+
+
 def test_moments_add_and_are_neither_mass_nor_point_forces() -> None:
     """With a moment in the live load λ is neither a force in newtons nor a multiple of the weight."""
     scene = tower()
@@ -318,9 +330,9 @@ def test_control_point_of_a_line_load_is_its_middle(ends: tuple[float, float], o
     live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [30.0, -40.0]}
     scene = panel(load__live=live)
     block, at, direction = scene.control_point
-    assert at.tolist() == pytest.approx([sum(ends) / 2, 0.72])
-    assert direction.tolist() == pytest.approx([0.6, -0.8])
-    assert set(block) == set(scene.blocks.containing(at))
+    assert at == pytest.approx(np.tile([sum(ends) / 2, 0.72], (on, 1)))
+    assert direction == pytest.approx(np.tile([0.6, -0.8], (on, 1)))
+    assert set(block) == set(scene.blocks.containing(at[0]))
     assert len(block) == on
 
 

@@ -140,7 +140,7 @@ def test_ground_turns_about_its_point_as_a_rigid_body(about: tuple[float, float]
     assert motion(point) == pytest.approx(by, abs=1e-15)
     assert motion(point + [1.0, 0.0]) == pytest.approx([by[0], by[1] + turn], rel=1e-12)
     assert motion(point + [0.0, 1.0]) == pytest.approx([by[0] - turn, by[1]], rel=1e-12)
-    block, at, direction = scene.control_point
+    block, (at,), (direction,) = scene.control_point
     low, high = scene.blocks.extent(int(moving[0]))
     assert (block.tolist(), at.tolist()) == (moving.tolist(), pytest.approx([(low[0] + high[0]) / 2, high[1]]))
     assert direction * np.hypot(*motion(at)) == pytest.approx(motion(at), rel=1e-12)
@@ -152,7 +152,7 @@ def test_control_point_is_where_ground_that_turns_about_its_top_moves_most(angle
     """The middle of the top stays, or moves by rounding errors only; the control point is an end of a joint."""
     live = {"kind": "settlement", "box": [[0.0, -0.1], [0.4, 0.1]], "rotation_angle": angle, "about": [0.2 + off, 0.0]}
     scene = panel(load__live=live)
-    (block,), at, direction = scene.control_point
+    (block,), (at,), (direction,) = scene.control_point
     assert scene.support_motion[block].any()
     assert at == pytest.approx([0.0, 0.0], abs=1e-12)
     assert direction == pytest.approx([0.0, -angle], abs=1e-12)
