@@ -17,13 +17,13 @@ from runningbond.contacts.rigid_sides import (
     turn_out,
     turned_sharp,
 )
-from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
+from runningbond.contacts.search import ContactForces, Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface, moving_far
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
 from runningbond.joints.frames import keep_frames, reframe_along
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices, Mask, Scene
 
 from .finite_frequency import frequencies_squared
 from .rigid_system import contact_points, held_masses, system_on
@@ -109,15 +109,19 @@ class RigidContacts:
             along += np.repeat(part, len(pairs)) * in_space(pull, shear, ends.contact[at, 2:])
         return along
 
-    def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """Forces on each body and their moments, as in `ContactSearch`."""
+    def forces(self, contacts: Contacts, motion: Array, force: Array) -> ContactForces:
+        """Forces at the ends of overlaps, as in `ContactSearch`."""
         ends = contacts.gathered(self.outline, motion)
         if self._points:
             pairs, share = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2
             along, force = force.reshape(2, self._points, -1), np.zeros((2, len(contacts)))
             for end, part in enumerate((1 - share, share)):
                 np.add.at(force.T, pairs[:, end], (part * along).sum(axis=1).T)
-        return contacts.resultants(self.outline, ends.contact, np.array(turn_out.py_func(*force, ends.out)))
+        return contacts.forces(self.outline, ends.contact, np.array(turn_out.py_func(*force, ends.out)))
+
+    def left_out(self, contacts: Contacts) -> Mask:
+        """Contacts of sides that met later."""
+        return contacts.joint < 0
 
     @cached_property
     def _key_of_point(self) -> Indices:

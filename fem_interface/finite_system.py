@@ -13,7 +13,7 @@ import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.rigid_sides import in_space, turn_out
-from runningbond.contacts.search import Contacts, facing_sides, find_contacts, position_of, resting
+from runningbond.contacts.search import ContactForces, Contacts, facing_sides, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface, moving_far
 from runningbond.scene import Array, Indices, Mask
 
@@ -214,11 +214,15 @@ class DeformableContacts:
         pull, shear = turn_out.py_func(*force, contact[:, 7])
         return in_space(pull, shear * contact[:, 6], contact[:, 2:4])
 
-    def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """Forces and moments on the blocks; see `ContactSearch`."""
+    def forces(self, contacts: Contacts, motion: Array, force: Array) -> ContactForces:
+        """Forces in space; see `ContactSearch`."""
         contact = self._gathered(contacts, motion).contact
         pull, shear = turn_out.py_func(*force, contact[:, 7])
-        return contacts.resultants(self.outline, contact[:, :4], np.array([pull, shear * contact[:, 6]]))
+        return contacts.forces(self.outline, contact[:, :4], np.array([pull, shear * contact[:, 6]]))
+
+    def left_out(self, contacts: Contacts) -> Mask:
+        """Contacts that bear no share of a joint point's force; see `ContactSearch`."""
+        return position_of(self._joint_points[0], contacts.key) < 0
 
     @cached_property
     def _joint_points(self) -> tuple[Indices, Array]:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .contacts.search import ContactForces
 from .joints import JointPoints
 from .scene import Array
 
@@ -36,6 +37,9 @@ class PathState:
         From 0 (sound) to 1 (broken).
     points : JointPoints
         The joint points in the order of `force`, with position (np, 2) [m], joint and blocks.
+    new_contacts : ContactForces
+        Contacts that blocks have made since the wall was built, at finite displacements: block (n, 2), the place (n, 2)
+        [m] where they touch now, and force (n, 2) of the second on the first block, along x and y [N].
     """
 
     multiplier: float
@@ -46,6 +50,7 @@ class PathState:
     velocity: Array
     damage: Array
     points: JointPoints
+    new_contacts: ContactForces
 
     def __repr__(self) -> str:
         return f"<PathState: λ = {self.multiplier:.4g}, {len(self.motion)} blocks, {len(self.force)} joint points>"
@@ -66,6 +71,7 @@ def collected(recorder: "Recorder") -> list[PathState]:
             frame.velocity,
             frame.damage[order],
             ordered,
+            frame.new_contacts,
         )
         for frame in recorder.frames
     ]

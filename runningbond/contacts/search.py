@@ -1,7 +1,7 @@
 """Contact search: the sides of blocks that are near enough to touch before the next search."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -100,8 +100,8 @@ class Contacts:
         gather_sides(motion, tuple(sides), *np.zeros((2, len(self))))  # a plain tuple, as in steps: compiled once
         return sides
 
-    def resultants(self, outline: Outline, contact: Array, force: Array) -> Array:
-        """Resultant contact forces on each block, moments about the origin, ``(nb, 3)`` [N, N, N m].
+    def forces(self, outline: Outline, contact: Array, force: Array) -> "ContactForces":
+        """Forces at the ends.
 
         Parameters
         ----------
@@ -110,9 +110,41 @@ class Contacts:
         force : (2, n) float
             Normal and tangential force of each end [N].
         """
-        (x, y), (fx, fy) = contact[:, :2].T, in_space(force[0], force[1], contact[:, 2:])
-        b, a = outline.blocks.owner[self.ends[:, 4:].astype(np.int64)].T
-        total = np.zeros((len(outline.blocks), 3))
+        sides = self.ends[:, :3:-1].astype(np.int64)  # of block a, and of block b
+        return ContactForces(
+            outline.blocks.owner[sides], contact[:, :2], in_space(force[0], force[1], contact[:, 2:]).T
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ContactForces:
+    """Forces at contacts of moved blocks.
+
+    Parameters
+    ----------
+    block : (n, 2) int
+        Blocks a and b that touch each other.
+    place : (n, 2) float
+        Where they touch, after their motion [m].
+    force : (n, 2) float
+        Force of block b on block a, along x and y [N].
+    """
+
+    block: Indices = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    place: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    force: Array = field(default_factory=lambda: np.zeros((0, 2)))
+
+    def __len__(self) -> int:
+        return len(self.block)
+
+    def chosen(self, rows: Mask) -> "ContactForces":
+        """The forces of some contacts."""
+        return ContactForces(self.block[rows], self.place[rows], self.force[rows])
+
+    def resultants(self, count: int) -> Array:
+        """Resultants on a number of blocks, moments about the origin, ``(nb, 3)`` [N, N, N m]."""
+        (x, y), (fx, fy), (a, b) = self.place.T, self.force.T, self.block.T
+        total = np.zeros((count, 3))
         for block, sense in ((a, 1.0), (b, -1.0)):
             np.add.at(total, block, sense * np.column_stack([fx, fy, x * fy - y * fx]))
         return total

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from runningbond.contacts.search import Contacts
+from runningbond.contacts.search import ContactForces, Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.results.reactions import resultants
 from runningbond.scene import ANCHOR, Array
@@ -375,7 +375,7 @@ class Run:
     def at_joints(self, state: State) -> Array:
         """Opening, slip [m], normal, tangential force [N], damage, plastic closure [m] of joints' points, ``(6, n)``.
 
-        At finite displacements these are points of the undeformed wall's joints; contacts made since are left out.
+        At finite displacements these are points of the undeformed wall's joints, without `new_contacts`.
         """
         jumps, tractions = np.split(np.array(self.tractions(state)), 2)
         law, search = self.interface.law, self.system.contacts
@@ -391,6 +391,14 @@ class Run:
         pulls = search.pulls(contacts_of(state), state.motion, np.array(self.forces(state)))
         none = np.zeros_like(pulls)
         return search.at_joints(contacts_of(state), np.vstack([none, pulls, none]))[2:4]
+
+    def new_contacts(self, state: State) -> ContactForces:
+        """Contacts that bear forces and are not in `at_joints`; none at small displacements."""
+        search = self.system.contacts
+        if search is None:
+            return ContactForces()
+        found = search.forces(contacts_of(state), state.motion, np.array(self.forces(state)))
+        return found.chosen(search.left_out(contacts_of(state)) & found.force.any(axis=1))
 
     def resultants(self, state: State, multiplier: float) -> Array:
         """Resultants of contacts, ties and loads on bodies, moments about the origin, ``(n, 3)`` [N, N m]."""
@@ -411,7 +419,8 @@ class Run:
             tied, origin = ends.body != ANCHOR, np.zeros((len(total), 2))
             places, pulls = ends.places(state.motion), system.ties.pulls(state.motion, state.stretch)
             total += resultants(ends.body[tied], places[tied], pulls[tied], origin)
-        return np.asarray(total + search.resultants(contacts_of(state), state.motion, np.array(self.forces(state))))
+        contacts = search.forces(contacts_of(state), state.motion, np.array(self.forces(state)))
+        return np.asarray(total + contacts.resultants(len(total)))
 
     def ledger(self, state: State, load: Array | None = None) -> Ledger:
         """Energy balance of a run so far.

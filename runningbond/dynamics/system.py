@@ -14,11 +14,11 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.search import Contacts
+from runningbond.contacts.search import ContactForces, Contacts
 from runningbond.joints import PointStrength
 from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import KernelLaw
-from runningbond.scene import Array, Forces, Indices, Scene
+from runningbond.scene import Array, Forces, Indices, Mask, Scene
 
 from .body_points import BodyPoints, Deformation, body_points, rigid_body
 from .clusters import NO_CLUSTERS, Clusters
@@ -128,11 +128,14 @@ class ContactSearch(Protocol):
         `force` has the points' normal and tangential forces ``(2, np)`` [N].
         """
 
-    def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """Forces on each body and their moments about the origin after a motion ``(nd,)``, ``(n, 3)`` [N, N, N m].
+    def forces(self, contacts: Contacts, motion: Array, force: Array) -> ContactForces:
+        """Forces at the contacts after a motion ``(nd,)``, from the points' normal and tangential ones ``(2, np)`` [N].
 
-        `force` has the points' normal and tangential forces ``(2, np)`` [N].
+        The forces of points between two ends are shared by these.
         """
+
+    def left_out(self, contacts: Contacts) -> Mask:
+        """Contacts ``(n,)`` that `at_joints` leaves out: made, or moved along a side, since the wall was built."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from runningbond.contacts.search import ContactForces
 from runningbond.joints import JointPoints, wall_points
 from runningbond.scene import Array, Indices, Scene, frozen
 
@@ -59,6 +60,8 @@ class Frame:
         σ_x, σ_y, τ_xy of the triangles [Pa]; empty for rigid blocks.
     time
         Time since the ground motion began [s]; None without a ground motion.
+    new_contacts
+        Contacts made since the wall was built, with their forces; they are no joint points.
     traction : (np, 2) float
         Tractions along x and y [Pa], tension positive; empty if they have the directions of undeformed joints.
     finite
@@ -79,6 +82,7 @@ class Frame:
     stress: Array = field(default_factory=lambda: np.zeros((0, 3)))
     time: float | None = None
     traction: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    new_contacts: ContactForces = field(default_factory=ContactForces)
     finite: bool = False
 
     def __post_init__(self) -> None:

@@ -210,6 +210,7 @@ class MotionRecorder(SeriesRecorder):
             sides,
             stress,
             traction=traction,
+            new_contacts=run.new_contacts(state),
             finite=finite,
         )
 

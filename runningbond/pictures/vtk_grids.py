@@ -10,7 +10,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runningbond.results.mechanism import carried, turned, turned_frames
+from runningbond.contacts.search import ContactForces
+from runningbond.results.mechanism import carried, rotated, turned, turned_frames
 from runningbond.scene import Array, Blocks, Indices, Scene
 
 from .deformed_shape import DeformedShape, course_numbers, crushed_ends, farthest_motion, outer_edges, series_scale
@@ -30,7 +31,7 @@ SECONDS = "time [s]"
 GROUND_MARGIN = 0.15
 """Distance around a wall up to which the ground is shown, relative to `Scene.size`."""
 
-LINE, TRIANGLE, POLYGON, QUAD = 3, 5, 7, 9
+VERTEX, LINE, TRIANGLE, POLYGON, QUAD = 1, 3, 5, 7, 9
 """VTK's numbers of cell types."""
 
 
@@ -80,16 +81,39 @@ class GridBuilder:
     def joints(self, frame: Frame) -> Grid:
         """Grid of the joints in pieces between neighbouring points, with the arrays of ``joints.pvd``.
 
-        Mid-lines come first, then quadrilaterals between the two sides.
+        Mid-lines come first, then quadrilaterals between the two sides, then the points of new contacts.
         """
-        points, pair = self._points, self._pieces
+        points, pair, new = self._points, self._pieces, frame.new_contacts
         # Points of a piece: both ends of its mid-line, then the quadrilateral, along side a and back along side b.
         at = pair[:, [0, 1, 0, 1, 1, 0]].ravel()
-        n = len(pair)
+        n, m = len(pair), len(new)
         corner = 6 * np.arange(n)[:, None]
         lines, quads = corner + np.arange(2), corner + np.arange(2, 6)
-        grid = _grid(points.position[at], [(LINE, lines.ravel(), np.full(n, 2)), (QUAD, quads.ravel(), np.full(n, 4))])
+        met = _on_block_a(self._scene.blocks, new, frame.motion)
+        grid = _grid(
+            np.concatenate([points.position[at], met]),
+            [
+                (LINE, lines.ravel(), np.full(n, 2)),
+                (QUAD, quads.ravel(), np.full(n, 4)),
+                (VERTEX, 6 * n + np.arange(m), np.ones(m, dtype=np.int64)),
+            ],
+        )
+        known = {DISPLACEMENT: _in_space(new.place - met), "force [N]": _in_space(new.force)}
+        for name, values in self._at_pieces(frame, at).items():
+            others = known.get(name, np.zeros((m, *values.shape[1:]), dtype=values.dtype))
+            _add(grid.point_data, {name: np.concatenate([values, others])})
+        piece, none = np.tile(pair[:, 0], 2), np.zeros(m, dtype=np.uint8)
+        joint, block = points.joint[piece], np.concatenate([points.block[piece], new.block])
+        inner = np.append(self._scene.joints.inner[joint].astype(np.uint8), none)
+        state = np.append(np.tile(joint_states(frame.state[pair]), 2).astype(np.uint8), none)
+        _add(grid.cell_data, {"joint": np.append(joint, np.full(m, -1)), "inner": inner, "state": state})
+        _add(grid.cell_data, {"block a": block[:, 0], "block b": block[:, 1]})
+        _add(grid.field_data, _moment(frame))
+        return grid
 
+    def _at_pieces(self, frame: Frame, at: Indices) -> dict[str, Any]:
+        """Arrays of the points of pieces, six to a piece, from the joint points there ``(n,)``."""
+        points, pair, n = self._points, self._pieces, len(self._pieces)
         still = points.normal, points.tangent
         normal, tangent = turned_frames(points, frame.motion) if frame.finite else still
         jump = frame.opening[:, None] * normal + frame.slip[:, None] * tangent
@@ -101,27 +125,19 @@ class GridBuilder:
         # Pieces that meet at a point share its area. Only mid-lines carry it, or sums would count it three times.
         area = (points.area / np.maximum(np.bincount(pair.ravel(), minlength=len(points)), 1))[at]
         area = area * np.tile([1.0, 1.0, 0.0, 0.0, 0.0, 0.0], n)
-        _add(
-            grid.point_data,
-            {
-                DISPLACEMENT: _in_space(a[at] + share * (b - a)[at]),
-                "normal": _in_space(normal[at]),
-                "jump [m]": _in_space(jump[at]),
-                "opening [m]": frame.opening[at],
-                "slip [m]": frame.slip[at],
-                "traction [Pa]": _in_space(traction[at]),
-                "force [N]": _in_space(area[:, None] * traction[at]),
-                "normal stress [Pa]": frame.normal[at],
-                "shear stress [Pa]": frame.tangential[at],
-                "damage": frame.damage[at],
-                "state": frame.state[at].astype(np.uint8),
-            },
-        )
-        joint = np.tile(points.joint[pair[:, 0]], 2)
-        state, inner = np.tile(joint_states(frame.state[pair]), 2), self._scene.joints.inner[joint]
-        _add(grid.cell_data, {"joint": joint, "inner": inner.astype(np.uint8), "state": state.astype(np.uint8)})
-        _add(grid.field_data, _moment(frame))
-        return grid
+        return {
+            DISPLACEMENT: _in_space(a[at] + share * (b - a)[at]),
+            "normal": _in_space(normal[at]),
+            "jump [m]": _in_space(jump[at]),
+            "opening [m]": frame.opening[at],
+            "slip [m]": frame.slip[at],
+            "traction [Pa]": _in_space(traction[at]),
+            "force [N]": _in_space(area[:, None] * traction[at]),
+            "normal stress [Pa]": frame.normal[at],
+            "shear stress [Pa]": frame.tangential[at],
+            "damage": frame.damage[at],
+            "state": frame.state[at].astype(np.uint8),
+        }
 
     def _sides(self, frame: Frame) -> Array:
         """Displacements of the joint points on sides a and b in a frame, ``(2, np, 2)`` [m]."""
@@ -181,6 +197,12 @@ def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
 def _moved(blocks: Blocks, block: Indices, at: Array, frame: Frame) -> Array:
     """Displacements ``(n, 2)`` [m] of points on rigid blocks in a frame."""
     return (turned if frame.finite else carried)(blocks, block, at, frame.motion)
+
+
+def _on_block_a(blocks: Blocks, contacts: ContactForces, motion: Array) -> Array:
+    """Points ``(n, 2)`` [m] of the undeformed block a that a motion ``(nb, 3)`` brings to the places of contacts."""
+    centroid, (u, v, spin) = blocks.centroid[contacts.block[:, 0]], motion[contacts.block[:, 0]].T
+    return centroid + rotated(contacts.place - centroid - np.column_stack([u, v]), -spin)
 
 
 def _templates(blocks: Blocks) -> Indices:

@@ -265,6 +265,38 @@ def test_recorded_joint_forces_balance_blocks(model: str, joint: dict[str, float
     assert np.abs(held[~scene.fixed]).max() < 1e-4 * weight[~scene.fixed].sum()
 
 
+@pytest.mark.parametrize(
+    ("model", "joint"),
+    [
+        ("dem-dynamic", {}),
+        ("dem-dynamic", {"compressive_strength": 1e8, "inset": 0.003}),
+        ("fem", {}),
+    ],
+)
+def test_recorded_forces_balance_a_block_that_slides_onto_another(model: str, joint: dict[str, float]) -> None:
+    """Far enough for half of its weight, at each moment; the contact made on the way is where the other block is."""
+    push = {"kind": "point", "at": [0.0, 0.2], "force": [1.0, 0.0]}
+    changes: dict[str, Any] = {"block": {"density": 2000.0, "young": 1e10, "poisson": 0.2}, "load__live": push}
+    own = STIFF | {"friction": 0.3} | joint
+    scene = courses([[1, 1], [1, -1]], joint=own, support__kind="fixed-first-course", **changes)
+    recorder = motion_recorder(scene, None)
+    run_model(model, scene, 0.05, recorder, displacements="finite", distance=0.25)
+    weight, above = 9.81 * scene.mass[2], 2
+    for frame in recorder.frames:
+        grid = GridBuilder(recorder.discretisation).joints(frame)
+        lines, met = grid.cells_dict[3], grid.cells_dict.get(1, np.zeros((0, 1), dtype=int))
+        force, sides = np.asarray(grid["force [N]"]), np.column_stack([grid["block a"], grid["block b"]])
+        pulls = np.concatenate([force[lines].sum(axis=1), force[met[:, 0]]])
+        sides = np.concatenate([sides[: len(lines)], sides[len(sides) - len(met) :]])
+        held = pulls[sides[:, 0] == above].sum(axis=0) - pulls[sides[:, 1] == above].sum(axis=0)
+        assert held + [frame.multiplier, -weight, 0.0] == pytest.approx(np.zeros(3), abs=0.02 * weight)
+    on_next = (sides[len(lines) :] == 1).any(axis=1)
+    assert np.abs(force[met[on_next, 0]]).sum(axis=0)[1] > 0.4 * weight
+    x, y, _ = (np.asarray(grid.points) + grid[DISPLACEMENT])[met[on_next, 0]].T
+    assert y == pytest.approx(0.175, abs=0.01)
+    assert ((x > 0.4 - 1e-3) & (x < 0.66)).all()
+
+
 @pytest.mark.parametrize("support", ["base", "fixed-first-course"])
 def test_ground_is_shown_only_near_wall(support: str) -> None:
     scene = panel(support__kind=support)
