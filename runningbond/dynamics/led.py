@@ -180,7 +180,7 @@ def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
     If a wall falls off its supports at the same settlement at both speeds, its share may change up to there by more.
     """
     if len(traverses) > 1 and any(traverse.fall for traverse in traverses[-2:]):
-        return _fall_alike(*traverses[-2:], tolerance)
+        return _fall_alike(traverses[-2], traverses[-1], tolerance)
     ended = all(traverse.verdict != "undecided" for traverse in traverses[-2:])
     return ended and _spread(lead, traverses) <= tolerance and lead.apart(*traverses[-2:]) <= tolerance
 

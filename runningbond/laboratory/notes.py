@@ -5,10 +5,13 @@ import numpy as np
 from .measured import SWING, MeasuredWall
 from .modes import GROUPS, NAMED
 
+LOWER = 0.02
+"""Part of a wall's height by which its actuator may be lower because sizes are rounded."""
+
 
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    return [*_unknown_modes(wall), *_missing_cycles(wall), *_offset(wall)]
+    return [*_unknown_modes(wall), *_missing_cycles(wall), *_low_force(wall), *_offset(wall)]
 
 
 def _unknown_modes(wall: MeasuredWall) -> list[str]:
@@ -25,6 +28,15 @@ def lacks_cycles(wall: MeasuredWall) -> bool:
 def _missing_cycles(wall: MeasuredWall) -> list[str]:
     what = f"the test was cyclic, but there is no {wall.name}.csv with its cycles; models push the wall to one side"
     return [what] if lacks_cycles(wall) else []
+
+
+def _low_force(wall: MeasuredWall) -> list[str]:
+    """An actuator below the top of the wall: in tables of walls bent in double curvature it is where no moment acts."""
+    at, top = wall.row.optional("H0"), wall.row.optional("H")
+    if wall.scene_file is not None or at is None or top is None or at >= (1 - LOWER) * top:
+        return []
+    told = f"H0 = {1e3 * at:.4g} mm is below the top of the wall, {1e3 * top:.4g} mm"
+    return [f"{told}; models push a free beam at that height, where the wall's moment vanishes"]
 
 
 def _offset(wall: MeasuredWall) -> list[str]:
