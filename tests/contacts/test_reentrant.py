@@ -171,7 +171,7 @@ def test_block_with_its_toe_in_a_notch_topples_as_on_rough_ground(model: Any, sl
     scene = stones(box(0, 0, width, height), friction=0.1, grounds=[notched])
     outcome = model(scene, 0.005, displacements="finite")
     alpha, corner = math.atan(width / height), np.array([width, height])
-    follows(outcome, np.tan(alpha - angles(outcome.curve, corner, np.array([1.0, 0.0]))))
+    follows(outcome, np.tan(alpha - angles(outcome.curve, corner[None], np.array([[1.0, 0.0]]))))
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
