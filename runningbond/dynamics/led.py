@@ -4,7 +4,8 @@ The whole path is traversed again at half the speed until its answer converges: 
 along its first move, the share of the dead load that supports carry at the required settlement, or the largest
 multiplier of a pushing live load. The answer counts as a collapse if a mechanism has formed: if its growth along the
 path leaves less than the tolerance to grow, or a share has changed by less than the tolerance over the last tenth of
-the path, or the wall falls. Otherwise the wall still hardens, or the support still sheds or takes up load, at the end of the path. A wall at rest whose support carries nothing any more bridges it.
+the path, or the wall falls. Otherwise the wall still hardens, or the support still sheds or takes up load, at the end
+of the path. A wall at rest whose support carries nothing any more bridges it.
 """
 
 from collections.abc import Callable
