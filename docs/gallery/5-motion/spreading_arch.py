@@ -18,4 +18,5 @@ for displacements in ("small", "finite"):
     curve = arch.run("dem-dynamic", displacements=displacements).curve
     plt.plot(curve["displacement"], curve["multiplier"], "o-", label=f"{displacements} displacements")
 plt.gca().set(xlabel="spread [m]", ylabel="thrust, as a share of the weight", title="Two blocks between abutments")
+plt.ylim(0, 3)
 plt.legend()
