@@ -541,6 +541,16 @@ def test_finite_displacements_follow_the_drive_of_a_beam() -> None:
     assert last.outcome.upper is not None
 
 
+@pytest.mark.parametrize("drive", [{"force": [1.0, 0.0]}, {"displacement": [0.01, 0.0]}])
+def test_meaning_of_the_answer_is_that_of_its_load(drive: dict[str, Any]) -> None:
+    """Under a prescribed displacement no load is raised, and no rest at a load is the lower end."""
+    beam = {"height": 0.1, "condition": "level", "force": [0, -1e3], "drive": drive}
+    found = Knowledge(courses([[1], [1]], beam=beam, load={"gravity": 9.81}, **STIFF), 0.05)
+    found.learn(MODELS["dem-static"], Outcome("", "dem-static", "collapse", 600.0, 590.0, 610.0))
+    assert ("loads raised slowly" in found.meaning()) == ("force" in drive)
+    assert found.meaning().startswith("largest reaction of the drive") == ("displacement" in drive)
+
+
 def test_interrupted_finite_history_is_reported_as_undecided() -> None:
     found = known(1.0, (0.97, 0.99))
     stopped = Outcome("", "dem-dynamic, finite", "undecided", message="interrupted")

@@ -195,6 +195,8 @@ class Knowledge:
         if self.draws == 1 and answer.fall is not None:
             told = "the lowest and the highest of its paths in load steps of several lengths"
         wide = "" if _within(answer, self.tolerance) else ", which lie further apart than the tolerance"
+        if self.scene.is_led:
+            return f"largest reaction of the drive along its path in {told}{wide}{below}{above}"
         return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
 
     def _certified(self, answer: Outcome) -> str:
