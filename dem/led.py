@@ -186,7 +186,8 @@ def _judge(
     if lead.settles:
         ends = run.fell or formed(outcome.curve, tolerance)
     else:
-        ends, upper = left <= tolerance * max(upper, _least(lead)), upper + left
+        room = tolerance - _spread(lead, [lower, upper])
+        ends, upper = left <= (room if room > 0 else tolerance) * max(upper, _least(lead)), upper + left
     if ends and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
         fall = f"; the wall falls at {at}, and the answer is that of its last rest" if run.fell else ""
         return replace(

@@ -41,8 +41,8 @@ LOSS = 0.8
 FINAL_PART = 0.1
 """Last part of a path, over which a share no longer changes, and a force no longer grows, if a mechanism has formed."""
 
-STRAIGHT = 2.0
-"""What is left to grow on twice the path, relative to the growth over its last half, if a force grows along a line."""
+FINAL_ROWS = 20
+"""Number of places in this part at which a force is read: its mean is not as noisy."""
 
 UNCHANGED = 1e-6
 """Change of the share on a support that counts as none, in addition to the tolerance times its total change."""
@@ -370,34 +370,37 @@ class Lead:
         # Small steps at the start of each leg, where reactions change most.
         shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
         stages = [at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:]]
-        before, fall, ahead = 0.0, None, stages[::-1]
+        before, doubtful, ahead = 0.0, None, stages[::-1]
         while ahead:
-            settled = ahead.pop()
-            exactly = fall is not None or settled == stages[-1]
+            settled = ahead[-1]
+            exactly = doubtful is not None or settled == stages[-1]
             moving = self._stage(traverse, state, speed, settled - before, given, exactly=exactly)
-            # Of a fall at small displacements the motion is shown; at finite ones blocks may have turned by any angle.
             stands, small = traverse.verdict == "stable", run.system.contacts is None
-            if (fall is None or not small) if stands else small:
+            # Of a fall at small displacements the motion is shown; at finite ones blocks may have turned by any angle.
+            if (doubtful is None or not small) if stands else small:
                 traverse.motion, traverse.crushed = state.motion - self.start.motion, self.crushed(state)
             if stands:
                 bears = self.share(state, 0.0, self.criteria.interval, given)
                 # Close to the end supports barely move. What changes as they stop is friction that motion has loosened.
                 # Up to a fall the share may go on changing in the same sense.
-                loosened, since = abs(bears - moving), 0.0 if fall is None else bears - traverse.rows[-1].force
+                loosened, since = abs(bears - moving), 0.0 if doubtful is None else bears - traverse.rows[-1].force
                 traverse.unseen, traverse.inertia = max(loosened, since), max(loosened, -since)
                 self.note(traverse, state, far * settled, bears)
-                traverse.best, before = state.copy(), settled
+                traverse.best, before = state.copy(), ahead.pop()
+                doubtful = None if settled == doubtful else doubtful
                 self.observe(run, state, bears)
-            else:  # the energy in the rubble of a fall is not judged
-                state = replace(traverse.best.copy(), steps=state.steps)
-                if traverse.verdict == "undecided":
-                    break
-                fall = settled
-            if fall is not None:
-                near = FALL_PART * max(abs(fall), FALL_PART * self.longest)
-                ahead = [(before + fall) / 2] if abs(fall - before) > near else []
-        if fall is not None:
-            traverse.verdict, traverse.fall = "collapse", (abs(far * before), abs(far * fall))
+                continue
+            # The energy in the rubble of a fall is not judged. A long stage shakes the wall: only a fall in a short one
+            # counts, and the others are tried again from a nearer rest.
+            state = replace(traverse.best.copy(), steps=state.steps)
+            if traverse.verdict == "undecided":
+                break
+            if abs(settled - before) <= FALL_PART * max(abs(settled), FALL_PART * self.longest):
+                first, last = sorted((abs(far * before), abs(far * settled)))
+                traverse.fall = first, last
+                break
+            doubtful = settled if doubtful is None else doubtful
+            ahead.append((before + settled) / 2)
         return state
 
     def _stage(
@@ -450,19 +453,25 @@ def last_leg(curve: Array) -> Array:
 
 
 def growth_left(curve: Array) -> float:
-    """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved on.
+    """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved twice as far.
 
-    Of elastic joints the force approaches that of a mechanism more and more slowly: by each doubling of the path, its
-    growth falls by the same factor, or on a straight line doubles. This is read from the last two doublings; nothing is
-    left if the force has not grown over `FINAL_PART`.
+    It grows no faster than over `FINAL_PART`, because joints that have slid or opened stay soft. A wall that hardens
+    again after a peak counts from its force, not from the peak. Only displacements beyond all earlier ones count.
     """
-    value, force = curve[np.argsort(curve[:, 0], kind="stable")].T
-    places = np.array([0.25, 0.5, 1 - FINAL_PART, 1.0]) * value[-1]
-    quarter, half, late, end = np.interp(places, value, np.maximum.accumulate(force)).tolist()
-    if end <= late:
-        return 0.0
-    growth, before = end - half, half - quarter
-    return float(growth * (STRAIGHT if 3 * growth >= 2 * before else growth / (before - growth)))
+    value, force = curve.T
+    farthest = np.maximum.accumulate(value)
+    onward = np.append(True, value[1:] > farthest[:-1] + PATH_ROUNDING * farthest[-1])
+    places, force = value[onward], force[onward]
+    most = np.maximum.accumulate(force)
+    shares = np.array([1 - 2 * FINAL_PART, 1 - FINAL_PART, 1.0])
+    early, late, end = np.interp(shares * places[-1], places, most)
+    left = (end - late) / FINAL_PART
+    if end <= early:
+        part = np.linspace(0.0, FINAL_PART, FINAL_ROWS)
+        before, last = (np.interp((1 - back - part) * places[-1], places, force).mean() for back in (FINAL_PART, 0.0))
+        # The mean is the force half a part before the end.
+        left = last + (last - before) / FINAL_PART * (1 + FINAL_PART / 2) - end
+    return max(float(left), 0.0)
 
 
 def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:

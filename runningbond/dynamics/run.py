@@ -59,12 +59,15 @@ class Ledger:
 class Unstable(ArithmeticError):
     """Raised if a run spends more energy than it was supplied with, as it does with too long a time step.
 
-    The message contains the number of steps, the time step taken and one that is safe [s].
+    The message contains the number of steps, the time step taken and, if it is longer, one that is safe [s].
     """
 
     def __init__(self, steps: int, step: float, safe: float) -> None:
         message = f"unstable: more energy was spent than supplied after {steps} time steps of {step:.4g} s"
-        super().__init__(f"{message}; a step of {safe:.4g} s is safe")
+        why = (
+            f"a step of {safe:.4g} s is safe" if step > safe else "the step is safe for vibrations, not for any impact"
+        )
+        super().__init__(f"{message}; {why}")
         self.steps = steps
 
 

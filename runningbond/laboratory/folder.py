@@ -29,7 +29,7 @@ WRONG_UNIT = 100.0
 """Ratio of the largest force of a curve to that of the table, or its inverse, above which one of them has a wrong
 unit."""
 
-BETWEEN_MODES = re.compile(r"[,;/+&]|\b(?:and|with)\b|(?<![a-z]{3})[-–—](?![a-z]{3})", re.IGNORECASE)
+BETWEEN_MODES = re.compile(r"[,;/+&()]|\b(?:and|with|then|followed by)\b|(?<![a-z]{3})[-–—](?![a-z]{3})", re.IGNORECASE)
 """What separates failure modes: hyphens as well, as in R-TC, but not within words, as in toe-crushing."""
 
 DRIFTS = (1e-4, 1.0)
@@ -187,7 +187,7 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     if CRACKS in there:
         _check_picture(there[CRACKS])
     modes = _words(row.text("from test report: failure type"))
-    printed = [row.optional("Vmax,+"), row.optional("Vmax,-", magnitude=True)]
+    printed = [row.optional("Vmax,+", may_be_zero=True), row.optional("Vmax,-", magnitude=True, may_be_zero=True)]
     peaks = tuple(value for value in printed if value is not None)
     if len(curve) and peaks:
         largest, told = float(np.nanmax(np.abs(curve[:, 1]))), max(peaks)
@@ -231,17 +231,23 @@ def _is_pushed_left(wall: MeasuredWall) -> bool:
 
 
 def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -> tuple[float, ...]:
-    """Largest forces to the sides to which a wall was pushed: as its table has them, else as its curve has them."""
-    recorded: tuple[float | None, ...] = (None, None)
+    """Largest forces to the sides to which a wall was pushed: as its table has them, else as its curve has them.
+
+    A monotonic test has one. So has a cyclic one whose record is to one side, unless its table has both; whichever
+    column has the number.
+    """
+    printed = [negative, positive] if wall.is_turned else [positive, negative]
+    recorded: list[float | None] = [None, None]
     if len(wall.curve):
         forces = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
         least = SWING * max(wall.reach)
         pushed = zip(forces, wall.reach, strict=True)
-        recorded = tuple(force if far > least and force > 0 else None for force, far in pushed)
-    printed = (negative, positive) if wall.is_turned else (positive, negative)
+        recorded = [force if far > least and force > 0 else None for force, far in pushed]
+    told = [value for value in printed if value is not None]
+    if not wall.is_cyclic or (len(wall.curve) and recorded[1] is None and len(told) < 2):
+        return tuple([*told, *(value for value in recorded if value is not None)][:1])
     known = [one if one is not None else other for one, other in zip(printed, recorded, strict=True)]
-    found = tuple(value for value in known if value is not None)
-    return found if wall.is_cyclic else found[:1]
+    return tuple(value for value in known if value is not None)
 
 
 def read_curve(path: Path) -> Array:
@@ -250,12 +256,15 @@ def read_curve(path: Path) -> Array:
     In the file, a row without both numbers separates loops: an empty line, or a row with two entries of `NOTHING`.
     """
     lines = list(dropwhile(lambda line: _is_empty(line[1]), _lines(path)))
-    heads = [cell.strip() for cell in lines[0][1]] if lines else []
-    if any(head not in heads for head in HEADS):
+    written = [cell.strip() for cell in lines[0][1]] if lines else []
+    heads = [head.casefold() for head in written]
+    if any(head.casefold() not in heads for head in HEADS):
         raise SceneError(
-            f"{path.name}, line {lines[0][0] if lines else 1}", f"must be the heads {','.join(HEADS)}", ",".join(heads)
+            f"{path.name}, line {lines[0][0] if lines else 1}",
+            f"must be the heads {','.join(HEADS)}",
+            ",".join(written),
         )
-    columns = [heads.index(head) for head in HEADS]
+    columns = [heads.index(head.casefold()) for head in HEADS]
     for number, cells in lines[1:]:
         if any(cell.strip() for cell in cells[len(heads) :]):
             what = f"must have {len(heads)} entries, as its heads; has {len(cells)}"

@@ -9,7 +9,10 @@ from pathlib import Path
 from runningbond.scene import SceneError
 
 LENGTHS, FORCES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"N": 1.0, "kN": 1e3}
-STRESSES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "N/mm²": 1e6, "N/mm2": 1e6}
+STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm²": 1e6}
+ALIKE = {"KN": "kN", "N/mm2": "N/mm²", "N/mm^2": "N/mm²"}
+"""Other ways to write these units."""
+
 KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES)
 """Units of each kind, and their sizes in SI units."""
 
@@ -28,6 +31,9 @@ NOTHING = ("", "-", "−", "–", "—", "nan", "na", "n/a", "#n/a", "#nv")
 
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\]|\((.*)\))?\s*$", re.DOTALL)
 """A column's name, and its unit in brackets or parentheses."""
+
+DRY = re.compile(r"dry([ -](joint(s|ed)?|stacked|stone|masonry))*")
+"""Words for dry joints, in lower case."""
 
 MINUS = {ord(sign): "-" for sign in "−–"}
 """Signs that count as the minus of a number."""
@@ -69,7 +75,7 @@ class TableRow:
     def joints(self) -> str:
         """Kind of its joints, such as "dry", in lower case; empty if it is not told."""
         said = self.text("joints").casefold()
-        return "" if said in NOTHING else said.partition(" joint")[0]
+        return "" if said in NOTHING else "dry" if DRY.fullmatch(said) else said
 
     @property
     def place(self) -> str:
@@ -92,8 +98,8 @@ class TableRow:
             raise SceneError(self.key(column), "is missing; it must be a number above 0, or a scene NAME.toml be there")
         return value
 
-    def optional(self, column: str, *, magnitude: bool = False) -> float | None:
-        """An entry as a number above 0, or the `magnitude` of any, in SI units; None if it is empty, or that is 0."""
+    def optional(self, column: str, *, magnitude: bool = False, may_be_zero: bool = False) -> float | None:
+        """An entry as a number above 0, or the `magnitude` of any, in SI units; None if it is empty, or a valid 0."""
         text, unit = self.entries.get(column.casefold(), ("", ""))
         if text.casefold() in NOTHING:
             return None
@@ -102,12 +108,12 @@ class TableRow:
         except ValueError:
             value = math.nan
         value = abs(value) if magnitude else value
-        if magnitude and value == 0:  # a wall that was not pushed to that side
+        if may_be_zero and value == 0:
             return None
         if not (math.isfinite(value) and value > 0):
             comma = ", with a decimal point and no other separators" if "," in text else ""
             raise SceneError(self.key(column), f"must be a number above 0{comma}", text)
-        units = units_of(column)
+        units, unit = units_of(column), ALIKE.get(unit.strip(), unit.strip())
         if unit not in units:
             raise SceneError(self.key(column), f"must have a unit, one of {', '.join(units)}", unit)
         return value * units[unit]

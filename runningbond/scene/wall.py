@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 import shapely
 
-from .actions import Action
+from .actions import Action, same_for
 from .arrays import Array, Indices, Mask, components, frozen
 from .assignment import BEAM, GROUND, Assignment, assign_blocks, assign_joints
 from .beam import Beam, Drive
@@ -310,7 +310,9 @@ class Scene:
     @cached_property
     def control_point(self) -> tuple[Indices, Array, Array]:
         """Blocks, points and directions whose mean displacement is recorded: those of the first live load."""
-        return self.load.live[0].control(self)
+        block, at, direction = self.load.live[0].control(self)
+        # A user's load may give one point for all blocks.
+        return (block, at, direction) if np.ndim(at) == 2 else same_for(block, np.asarray(at), np.asarray(direction))
 
     @cached_property
     def column_by_column(self) -> Indices:

@@ -1,5 +1,6 @@
 """Table rows become scenes: facts of the campaigns, and a one-line error for invalid input."""
 
+import itertools
 import re
 import tomllib
 from collections.abc import Callable
@@ -750,5 +751,11 @@ def test_force_of_the_other_side_may_be_signed(tmp_path: Path) -> None:
     for forces, peaks in ((",61,,", (61e3, 40e3)), (",,-43,", (58e3, 43e3)), (",,,", (58e3, 40e3))):
         partly = cyclic.replace(",61,-43,", forces)
         assert read_folder(write_folder(tmp_path, partly, curve=record))[0].peaks == peaks
+    for sign, forces in itertools.product((1, -1), (",61,,", ",,-61,", ",61,0,", ",0,61,")):
+        # Of a push to one side the one number counts, whichever side it is.
+        one_sided = "displacement_mm,force_kN\n0,0\n" + f"{5 * sign},{58 * sign}\n{10 * sign},{57 * sign}\n"
+        for kind in ("Cyclic", "Monotonic"):
+            partly = row.replace("Cyclic", kind).replace(",61,-43,", forces)
+            assert read_folder(write_folder(tmp_path, partly, curve=one_sided))[0].peaks == (61e3,)
     with pytest.raises(SceneError, match=re.escape("Vmax,+ = '-61': must be a number above 0")):
         one(tmp_path, row.replace(",61,", ",-61,"))
