@@ -41,8 +41,11 @@ LOSS = 0.8
 FINAL_PART = 0.1
 """Last part of a path, over which a share no longer changes, and a force no longer grows, if a mechanism has formed."""
 
-FINAL_ROWS = 20
-"""Number of places in this part at which a force is read: its mean is not as noisy."""
+FINAL_ROWS = 40
+"""Number of places in this part at which a force is read to find its slope."""
+
+SCATTERS = 3.0
+"""Ratio of a slope to its standard error below which it is none."""
 
 UNCHANGED = 1e-6
 """Change of the share on a support that counts as none, in addition to the tolerance times its total change."""
@@ -68,6 +71,13 @@ LITTLE = 0.01
 TOE = "broken toe [m]"
 BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]", TOE)
 """Further columns for each row of a beam's path."""
+
+
+class Place(NamedTuple):
+    """Place on the path of a settlement."""
+
+    way: float  # length of the path up to there, as a fraction of the settlement
+    settled: float  # fraction of the settlement
 
 
 class TraverseRow(NamedTuple):
@@ -96,7 +106,7 @@ class Traverse:
     gone: float = 0.0  # sum over the rows of a push of how far the farthest blocks moved [m]
     elsewhere: tuple[Indices, Array, Array] | None = None  # where displacements are read if the control point stays
     lasting: float = 0.0  # largest mean force over a whole row during motion
-    fall: tuple[float, float] | None = None  # settlements [m] of the last rest and of a fall
+    fall: tuple[Place, Place] | None = None  # of the last rest, and of the fall, on supports that move
     resolved: bool = True  # whether means over shorter and shorter windows add almost nothing to the answer
 
     @property
@@ -244,6 +254,13 @@ class Lead:
         """A curve ``(n, 2)`` with displacements positive towards the side on which walls are to fail."""
         return curve
 
+    def unbraked(self, curve: Array) -> Array:
+        """A curve ``(n, 2)`` without the rows in which the drive brakes before it turns or ends: blocks push it on."""
+        senses = np.sign(np.diff(curve[:, 0]))
+        turns = np.append(np.flatnonzero(senses[1:] * senses[:-1] < 0) + 1, len(curve) - 1)
+        braking = turns[:, None] - np.arange(RAMP + 1)
+        return np.delete(curve, braking[braking > 0], axis=0)
+
     def before(self, curve: Array) -> str:
         """Note on the part of a curve ``(n, 2)`` before the answer; may be empty."""
         return ""
@@ -256,8 +273,8 @@ class Lead:
         """Note on how a wall has fallen at the end of a traverse."""
         curve = traverse.curve
         if traverse.fall is not None:
-            between = "the wall falls between {:.4g} and {:.4g} m".format(*traverse.fall)
-            return f"{between}, and the answer is that of its last rest"
+            rest, fall = (abs(self.run.system.carried.displacement) * place.settled for place in traverse.fall)
+            return f"the wall falls between {rest:.4g} and {fall:.4g} m, and the answer is that of its last rest"
         return f"the wall falls beyond {np.abs(curve[:, 0]).max():.4g} m"
 
     def crushed(self, state: State) -> Array:
@@ -367,27 +384,27 @@ class Lead:
         self.note(traverse, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
         self.observe(run, state, traverse.rows[-1].force)
         traverse.best = state.copy()
-        # Small steps at the start of each leg, where reactions change most.
-        shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
-        stages = [at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:]]
-        before, doubtful, ahead = 0.0, None, stages[::-1]
+        ahead = self._stages()[::-1]
+        end, before, doubtful = ahead[0], Place(0.0, 0.0), list[Place]()
         while ahead:
-            settled = ahead[-1]
-            exactly = doubtful is not None or settled == stages[-1]
-            moving = self._stage(traverse, state, speed, settled - before, given, exactly=exactly)
+            place = ahead[-1]
+            # At finite displacements a wall that slowly tips over is nearly at rest.
+            exactly = run.system.contacts is not None or bool(doubtful) or place == end
+            moving = self._stage(traverse, state, speed, place.settled - before.settled, given, exactly=exactly)
             stands, small = traverse.verdict == "stable", run.system.contacts is None
+            if stands and place in doubtful[:1]:
+                doubtful.clear()
             # Of a fall at small displacements the motion is shown; at finite ones blocks may have turned by any angle.
-            if (doubtful is None or not small) if stands else small:
+            if (not doubtful or not small) if stands else small:
                 traverse.motion, traverse.crushed = state.motion - self.start.motion, self.crushed(state)
             if stands:
                 bears = self.share(state, 0.0, self.criteria.interval, given)
                 # Close to the end supports barely move. What changes as they stop is friction that motion has loosened.
                 # Up to a fall the share may go on changing in the same sense.
-                loosened, since = abs(bears - moving), 0.0 if doubtful is None else bears - traverse.rows[-1].force
+                loosened, since = abs(bears - moving), bears - traverse.rows[-1].force if doubtful else 0.0
                 traverse.unseen, traverse.inertia = max(loosened, since), max(loosened, -since)
-                self.note(traverse, state, far * settled, bears)
+                self.note(traverse, state, far * place.settled, bears)
                 traverse.best, before = state.copy(), ahead.pop()
-                doubtful = None if settled == doubtful else doubtful
                 self.observe(run, state, bears)
                 continue
             # The energy in the rubble of a fall is not judged. A long stage shakes the wall: only a fall in a short one
@@ -395,13 +412,21 @@ class Lead:
             state = replace(traverse.best.copy(), steps=state.steps)
             if traverse.verdict == "undecided":
                 break
-            if abs(settled - before) <= FALL_PART * max(abs(settled), FALL_PART * self.longest):
-                first, last = sorted((abs(far * before), abs(far * settled)))
-                traverse.fall = first, last
+            if place.way - before.way <= FALL_PART * max(abs(place.settled), FALL_PART * self.longest):
+                traverse.fall = before, place
                 break
-            doubtful = settled if doubtful is None else doubtful
-            ahead.append((before + settled) / 2)
+            doubtful.append(place)
+            ahead.append(Place((before.way + place.way) / 2, (before.settled + place.settled) / 2))
         return state
+
+    def _stages(self) -> list[Place]:
+        """Ends of the stages of a settlement, small ones at the start of each leg, where reactions change most."""
+        shares, way, stages = np.linspace(0.0, 1.0, STAGES + 1)[1:] ** 2, 0.0, list[Place]()
+        for at, goal in pairwise([0.0, *self.goals.tolist()]):
+            if goal != at:
+                stages += [Place(way + abs(goal - at) * share, at + (goal - at) * share) for share in shares.tolist()]
+                way += abs(goal - at)
+        return stages
 
     def _stage(
         self, traverse: Traverse, state: State, speed: float, by: float, given: float, *, exactly: bool
@@ -455,23 +480,21 @@ def last_leg(curve: Array) -> Array:
 def growth_left(curve: Array) -> float:
     """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved twice as far.
 
-    It grows no faster than over `FINAL_PART`, because joints that have slid or opened stay soft. A wall that hardens
-    again after a peak counts from its force, not from the peak. Only displacements beyond all earlier ones count.
+    It grows from its last value at no more than its slope over `FINAL_PART`, because joints that have slid or opened
+    stay soft; a slope within its scatter is none. Only displacements beyond all earlier ones count.
     """
     value, force = curve.T
     farthest = np.maximum.accumulate(value)
     onward = np.append(True, value[1:] > farthest[:-1] + PATH_ROUNDING * farthest[-1])
     places, force = value[onward], force[onward]
-    most = np.maximum.accumulate(force)
-    shares = np.array([1 - 2 * FINAL_PART, 1 - FINAL_PART, 1.0])
-    early, late, end = np.interp(shares * places[-1], places, most)
-    left = (end - late) / FINAL_PART
-    if end <= early:
-        part = np.linspace(0.0, FINAL_PART, FINAL_ROWS)
-        before, last = (np.interp((1 - back - part) * places[-1], places, force).mean() for back in (FINAL_PART, 0.0))
-        # The mean is the force half a part before the end.
-        left = last + (last - before) / FINAL_PART * (1 + FINAL_PART / 2) - end
-    return max(float(left), 0.0)
+    share = np.linspace(0.0, 1.0, FINAL_ROWS)
+    last = np.interp((1 - FINAL_PART * (1 - share)) * places[-1], places, force)
+    slope, start = np.polyfit(share, last, 1)
+    scatter = np.std(last - start - slope * share) * np.sqrt(12 / FINAL_ROWS)
+    before, end = last[FINAL_ROWS // 2 :].reshape(2, -1).mean(axis=1)
+    if end < before or slope <= SCATTERS * scatter:
+        return 0.0
+    return max(0.0, float(start + slope + slope / FINAL_PART - force.max()))
 
 
 def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:

@@ -38,6 +38,9 @@ LOCKED = 20.0
 """Largest ratio of live force to weight of a block (weightless: to the strength of the strongest joint point) up to
 which a self-locking wall is pushed."""
 
+MUCH = 0.5
+"""Growth that is left, relative to the tolerance, above which a bracket need not have room for it."""
+
 UNACCOUNTED = 0.01
 """Fraction of the work of the loads that the energy ledger may miss before a run counts as failed."""
 
@@ -106,9 +109,6 @@ def collapse_of_led(
     outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
-    falls = [each.fall for each in traverses[-2:] if each.fall is not None]
-    if traverse.fall is not None:
-        traverse.fall = min(rest for rest, _ in falls), max(fall for _, fall in falls)
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(traverse.best)))
     if outcome.status == "undecided" and outcome.upper is None and not lead.settles and self_locking():
@@ -172,25 +172,35 @@ def _spread(lead: Lead, traverses: list[Traverse]) -> float:
 
 def _left(lead: Lead, traverse: Traverse) -> float:
     """Force [N] by which the answer of a drive or push may grow beyond the end of its path."""
-    return 0.0 if lead.settles or traverse.verdict == "collapse" else growth_left(lead.onward(traverse.curve))
+    if lead.settles or traverse.verdict == "collapse":
+        return 0.0
+    return growth_left(lead.onward(lead.unbraked(traverse.curve)))
 
 
 def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
     """Whether half the speed would change the answer, and what else is reported, by less than the tolerance.
 
     If a wall falls off its supports at the same settlement at both speeds, its share may change up to there by more.
+    A little growth that is left has room in the bracket beside the effect of the speed; no speed helps against much.
     """
-    if len(traverses) > 1 and any(traverse.fall for traverse in traverses[-2:]):
+    if len(traverses) < 2:
+        return False
+    if any(traverse.fall for traverse in traverses[-2:]):
         return _fall_alike(traverses[-2], traverses[-1], tolerance)
     ended = all(traverse.verdict != "undecided" for traverse in traverses[-2:])
-    return ended and _spread(lead, traverses) <= tolerance and lead.apart(*traverses[-2:]) <= tolerance
+    if not ended or lead.apart(*traverses[-2:]) > tolerance:
+        return False
+    left = _left(lead, traverses[-1]) / max(traverses[-1].answer, lead.least)
+    return _spread(lead, traverses) <= tolerance - (left if left < MUCH * tolerance else 0.0)
 
 
 def _fall_alike(fast: Traverse, slow: Traverse, tolerance: float) -> bool:
-    """Whether a wall falls at the same settlement at both speeds, to a tolerance."""
+    """Whether a wall falls at the same place of its path at both speeds, to a tolerance of the settlement there."""
     if fast.fall is None or slow.fall is None:
         return False
-    return max(fast.fall[0], slow.fall[0]) <= (1 + tolerance) * min(fast.fall[1], slow.fall[1])
+    rests, falls = zip(fast.fall, slow.fall, strict=True)
+    first = min(falls)
+    return max(rests).way <= first.way + tolerance * abs(first.settled)
 
 
 def _arrays(outcome: Outcome, lead: Lead, traverse: Traverse, point_order: Indices) -> Outcome:
@@ -246,6 +256,10 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     at = f"{abs(outcome.curve[-1, 0]) if lead.settles else np.abs(outcome.curve[:, 0]).max():.4g} m"
     if traverse.verdict == "undecided" or len(traverses) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
+    if places := [each.fall for each in traverses[-2:] if each.fall is not None]:
+        if not _fall_alike(traverses[-2], traverse, tolerance):
+            return replace(outcome, message=f"no answer: another speed changes whether or where it falls; {what}")
+        traverse.fall = min(rest for rest, _ in places), max(fall for _, fall in places)
     least, most = _bracket(traverses)
     fell = traverse.verdict == "collapse"
     if lead.settles and not fell and _has_come_free(lead, traverse.rows[-1]):

@@ -176,6 +176,10 @@ class Push(Lead):
         """The curve, positive towards the final side of the control point: other loads may push the point back."""
         return curve * (np.sign(curve[-1, 0]) or 1.0, 1.0)
 
+    def unbraked(self, curve: Array) -> Array:
+        """The curve: a push does not brake."""
+        return curve
+
     def apart(self, fast: Traverse, slow: Traverse) -> float:
         """Mean distance of the curves at two speeds, until half of the answer is left, relative to the answer."""
         (at, force), (other, before) = self.onward(slow.curve).T, self.onward(fast.curve).T

@@ -32,7 +32,7 @@ NOTHING = ("", "-", "−", "–", "—", "nan", "na", "n/a", "#n/a", "#nv")
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\]|\((.*)\))?\s*$", re.DOTALL)
 """A column's name, and its unit in brackets or parentheses."""
 
-DRY = re.compile(r"dry([ -](joint(s|ed)?|stacked|stone|masonry))*")
+DRY = re.compile(r"dry([ -]?(joint(s|ed)?|stack(ed)?|stone|laid|masonry|\(no mortar\)))*")
 """Words for dry joints, in lower case."""
 
 MINUS = {ord(sign): "-" for sign in "−–"}
@@ -75,7 +75,7 @@ class TableRow:
     def joints(self) -> str:
         """Kind of its joints, such as "dry", in lower case; empty if it is not told."""
         said = self.text("joints").casefold()
-        return "" if said in NOTHING else "dry" if DRY.fullmatch(said) else said
+        return "" if said in NOTHING else "dry" if DRY.fullmatch(said) else said.partition(" joint")[0]
 
     @property
     def place(self) -> str:
