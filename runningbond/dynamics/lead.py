@@ -481,7 +481,8 @@ def growth_left(curve: Array) -> float:
     """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved twice as far.
 
     It grows from its last value at no more than its slope over `FINAL_PART`, because joints that have slid or opened
-    stay soft; a slope within its scatter is none. Only displacements beyond all earlier ones count.
+    stay soft; a slope within its scatter is none. Below an earlier peak, where cracks may make it rise and fall like a
+    saw, it must also rise over the last half. Only displacements beyond all earlier ones count.
     """
     value, force = curve.T
     farthest = np.maximum.accumulate(value)
@@ -494,7 +495,11 @@ def growth_left(curve: Array) -> float:
     before, end = last[FINAL_ROWS // 2 :].reshape(2, -1).mean(axis=1)
     if end < before or slope <= SCATTERS * scatter:
         return 0.0
-    return max(0.0, float(start + slope + slope / FINAL_PART - force.max()))
+    end, rise = start + slope, slope / FINAL_PART
+    if end < force.max():
+        half = np.interp((1 + share) / 2 * places[-1], places, force)
+        rise = min(rise, 2 * np.polyfit(share, half, 1)[0])
+    return max(0.0, float(end + rise - force.max()))
 
 
 def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:
