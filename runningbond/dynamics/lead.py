@@ -44,6 +44,9 @@ FINAL_PART = 0.1
 FINAL_ROWS = 40
 """Number of places in this part at which a force is read to find its slope."""
 
+SAW = 0.005
+"""Loss of force over the last half of a path, relative to the largest force, above which its curve is not smooth."""
+
 SCATTERS = 3.0
 """Ratio of a slope to its standard error below which it is none."""
 
@@ -481,8 +484,9 @@ def growth_left(curve: Array) -> float:
     """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved twice as far.
 
     It grows from its last value at no more than its slope over `FINAL_PART`, because joints that have slid or opened
-    stay soft; a slope within its scatter is none. Below an earlier peak, where cracks may make it rise and fall like a
-    saw, it must also rise over the last half. Only displacements beyond all earlier ones count.
+    stay soft; a slope within its scatter is none. A force that rises and falls like a `SAW`, as joint points crack one
+    after the other, grows only if it rises over the last half as well, and by more than `FINAL_PART` on twice the path.
+    Only displacements beyond all earlier ones count.
     """
     value, force = curve.T
     farthest = np.maximum.accumulate(value)
@@ -495,11 +499,12 @@ def growth_left(curve: Array) -> float:
     before, end = last[FINAL_ROWS // 2 :].reshape(2, -1).mean(axis=1)
     if end < before or slope <= SCATTERS * scatter:
         return 0.0
-    end, rise = start + slope, slope / FINAL_PART
-    if end < force.max():
-        half = np.interp((1 + share) / 2 * places[-1], places, force)
+    end, rise, largest = start + slope, slope / FINAL_PART, float(force.max())
+    half = np.interp((1 + share) / 2 * places[-1], places, force)
+    if (np.maximum.accumulate(half) - half).max() > SAW * largest:
         rise = min(rise, 2 * np.polyfit(share, half, 1)[0])
-    return max(0.0, float(end + rise - force.max()))
+        rise *= rise > FINAL_PART * largest
+    return max(0.0, float(end + rise - largest))
 
 
 def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:

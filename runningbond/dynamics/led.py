@@ -22,7 +22,7 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, growth_left, shedding
+from .lead import BEAM, FINAL_PART, Lead, Traverse, TraverseRow, formed, goes_both_ways, growth_left, shedding
 from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
@@ -174,7 +174,12 @@ def _left(lead: Lead, traverse: Traverse) -> float:
     """Force [N] by which the answer of a drive or push may grow beyond the end of its path."""
     if lead.settles or traverse.verdict == "collapse":
         return 0.0
-    return growth_left(lead.onward(lead.unbraked(traverse.curve)))
+    if lead.run.system.contacts is None:
+        return growth_left(lead.onward(lead.unbraked(traverse.curve)))
+    # At finite displacements collisions and cracks make forces rise and fall: only new largest ones are growth.
+    value, force = lead.onward(traverse.curve).T
+    late = value >= (1 - FINAL_PART) * value.max()
+    return max(0.0, float(force[late].max() - force[~late].max(initial=0.0)))
 
 
 def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
