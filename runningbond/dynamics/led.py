@@ -174,9 +174,18 @@ def _left(lead: Lead, traverse: Traverse) -> float:
     """Force [N] by which the answer of a drive or push may grow beyond the end of its path."""
     if lead.settles or traverse.verdict == "collapse":
         return 0.0
+    if lead.run.system.contacts is not None:
+        return 0.0
+    return growth_left(lead.onward(lead.unbraked(traverse.curve)))
+
+
+def _late_growth(lead: Lead, traverse: Traverse) -> float:
+    """Growth of the largest force over the last part of a path at finite displacements; 0 at small ones.
+
+    There collisions and cracks make forces rise and fall, so that their slope says little.
+    """
     if lead.run.system.contacts is None:
-        return growth_left(lead.onward(lead.unbraked(traverse.curve)))
-    # At finite displacements collisions and cracks make forces rise and fall: only new largest ones are growth.
+        return 0.0
     value, force = lead.onward(traverse.curve).T
     late = value >= (1 - FINAL_PART) * value.max()
     return max(0.0, float(force[late].max() - force[~late].max(initial=0.0)))
@@ -275,7 +284,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         ends = fell or formed(outcome.curve, tolerance, still=traverse.answer - least)
     else:
         room = tolerance - spread if spread <= tolerance else tolerance
-        ends = left <= room * max(traverse.answer, lead.least)
+        grown = _late_growth(lead, traverse) <= tolerance * max(traverse.answer, lead.least)
+        ends = fell or (grown and left <= room * max(traverse.answer, lead.least))
     if not ends:
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
