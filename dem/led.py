@@ -6,11 +6,11 @@ reversal, steps start at the wall's elastic size and then grow, so that friction
 path is repeated in steps half as long until its answer settles.
 
 The answer is the largest reaction of a beam's drive along its first move, or the share of the dead load that supports
-carry at the prescribed settlement. It is a collapse load if a mechanism has formed: if its growth along the path leaves
-less than the tolerance to grow, or a share changes by less than the tolerance over the last tenth of the path, or if
-the wall falls. Otherwise the wall still hardens, or the support still sheds or takes up load, where the path ends, and
-the answer bounds the collapse from one side only. A wall at rest on a support that no longer carries any load bridges
-that support.
+carry at the prescribed settlement. It is a collapse load if a mechanism has formed: if the reaction would grow by no
+more than the tolerance on a path twice as long, or the share changes by less than the tolerance over the last tenth of
+the path, or if the wall falls. Otherwise the wall still hardens, or the support still sheds or takes up load, where
+the path ends, and the answer bounds the collapse from one side only. A wall at rest on a support that no longer carries
+any load bridges that support.
 """
 
 from dataclasses import dataclass, replace

@@ -44,9 +44,6 @@ FINAL_PART = 0.1
 FINAL_ROWS = 40
 """Number of places in this part at which a force is read to find its slope."""
 
-SAW = 0.005
-"""Loss of force over the last half of a path, relative to the largest force, above which its curve is not smooth."""
-
 SCATTERS = 3.0
 """Ratio of a slope to its standard error below which it is none."""
 
@@ -274,11 +271,10 @@ class Lead:
 
     def fall(self, traverse: Traverse) -> str:
         """Note on how a wall has fallen at the end of a traverse."""
-        curve = traverse.curve
         if traverse.fall is not None:
             rest, fall = (abs(self.run.system.carried.displacement) * place.settled for place in traverse.fall)
-            return f"the wall falls between {rest:.4g} and {fall:.4g} m, and the answer is that of its last rest"
-        return f"the wall falls beyond {np.abs(curve[:, 0]).max():.4g} m"
+            return f"the wall falls between {rest:.4g} and {fall:.4g} m"
+        return f"the wall falls beyond {np.abs(traverse.curve[:, 0]).max():.4g} m"
 
     def crushed(self, state: State) -> Array:
         """Permanent closure of joints at their ends [m], ``(nj, 2)``; empty if no joint can crush."""
@@ -383,7 +379,7 @@ class Lead:
 
     def _settle(self, traverse: Traverse, state: State, speed: float) -> State:
         run, given = self.run, self.run.given(state)
-        far = run.system.carried[1]
+        far = run.system.carried.displacement
         self.note(traverse, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
         self.observe(run, state, traverse.rows[-1].force)
         traverse.best = state.copy()
@@ -484,9 +480,7 @@ def growth_left(curve: Array) -> float:
     """Force [N] by which the largest force of a drive's curve ``(n, 2)`` may grow if the wall is moved twice as far.
 
     It grows from its last value at no more than its slope over `FINAL_PART`, because joints that have slid or opened
-    stay soft; a slope within its scatter is none. A force that rises and falls like a `SAW`, as joint points crack one
-    after the other, grows only if it rises over the last half as well, and by more than `FINAL_PART` on twice the path.
-    Only displacements beyond all earlier ones count.
+    stay soft; a slope within its scatter is none. Only displacements beyond all earlier ones count.
     """
     value, force = curve.T
     farthest = np.maximum.accumulate(value)
@@ -499,12 +493,14 @@ def growth_left(curve: Array) -> float:
     before, end = last[FINAL_ROWS // 2 :].reshape(2, -1).mean(axis=1)
     if end < before or slope <= SCATTERS * scatter:
         return 0.0
-    end, rise, largest = start + slope, slope / FINAL_PART, float(force.max())
-    half = np.interp((1 + share) / 2 * places[-1], places, force)
-    if (np.maximum.accumulate(half) - half).max() > SAW * largest:
-        rise = min(rise, 2 * np.polyfit(share, half, 1)[0])
-        rise *= rise > FINAL_PART * largest
-    return max(0.0, float(end + rise - largest))
+    return max(0.0, float(start + slope + slope / FINAL_PART - force.max()))
+
+
+def late_growth(curve: Array) -> float:
+    """Growth of the largest force [N] of a curve ``(n, 2)`` over the last part of its path."""
+    value, force = curve.T
+    late = value >= (1 - FINAL_PART) * value.max()
+    return max(0.0, float(force[late].max() - force[~late].max(initial=0.0)))
 
 
 def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:

@@ -2,10 +2,10 @@
 
 The whole path is traversed again at half the speed until its answer converges: the largest reaction of a beam's drive
 along its first move, the share of the dead load that supports carry at the required settlement, or the largest
-multiplier of a pushing live load. The answer counts as a collapse if a mechanism has formed: if its growth along the
-path leaves less than the tolerance to grow, or a share has changed by less than the tolerance over the last tenth of
-the path, or the wall falls. Otherwise the wall still hardens, or the support still sheds or takes up load, at the end
-of the path. A wall at rest whose support carries nothing any more bridges it.
+multiplier of a pushing live load. The answer counts as a collapse if a mechanism has formed: if it has changed by less
+than the tolerance over the last tenth of the path and, at small displacements, would grow by no more than that on a
+path twice as long; or the wall falls. Otherwise the wall still hardens, or the support still sheds or takes up load,
+at the end of the path. A wall at rest whose support carries nothing any more bridges it.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, FINAL_PART, Lead, Traverse, TraverseRow, formed, goes_both_ways, growth_left, shedding
+from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, growth_left, late_growth, shedding
 from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
@@ -171,24 +171,13 @@ def _spread(lead: Lead, traverses: list[Traverse]) -> float:
 
 
 def _left(lead: Lead, traverse: Traverse) -> float:
-    """Force [N] by which the answer of a drive or push may grow beyond the end of its path."""
-    if lead.settles or traverse.verdict == "collapse":
-        return 0.0
-    if lead.run.system.contacts is not None:
+    """Force [N] by which the answer of a drive or push may grow beyond the end of its path, at small displacements.
+
+    At finite ones collisions and cracks make forces rise and fall, so that their slope says little.
+    """
+    if lead.settles or traverse.verdict == "collapse" or lead.run.system.contacts is not None:
         return 0.0
     return growth_left(lead.onward(lead.unbraked(traverse.curve)))
-
-
-def _late_growth(lead: Lead, traverse: Traverse) -> float:
-    """Growth of the largest force over the last part of a path at finite displacements; 0 at small ones.
-
-    There collisions and cracks make forces rise and fall, so that their slope says little.
-    """
-    if lead.run.system.contacts is None:
-        return 0.0
-    value, force = lead.onward(traverse.curve).T
-    late = value >= (1 - FINAL_PART) * value.max()
-    return max(0.0, float(force[late].max() - force[~late].max(initial=0.0)))
 
 
 def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
@@ -284,8 +273,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         ends = fell or formed(outcome.curve, tolerance, still=traverse.answer - least)
     else:
         room = tolerance - spread if spread <= tolerance else tolerance
-        grown = _late_growth(lead, traverse) <= tolerance * max(traverse.answer, lead.least)
-        ends = fell or (grown and left <= room * max(traverse.answer, lead.least))
+        scale, grown = max(traverse.answer, lead.least), late_growth(lead.onward(outcome.curve))
+        ends = fell or (grown <= tolerance * scale and left <= room * scale)
     if not ends:
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
@@ -298,7 +287,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     if spread > tolerance and not _rate(lead.scene):
         why = joined("another speed changes it by more than the tolerance", lead.remedy(outcome.curve))
         if traverse.fall is not None:
-            why = "{}, up to which it changes by more than the tolerance".format(lead.fall(traverse).partition(",")[0])
+            why = f"{lead.fall(traverse)}, up to which it changes by more than the tolerance"
         return replace(outcome, message=f"no answer: {why}; {what}")
-    fall = f"; {lead.fall(traverse)}" if fell else ""
-    return replace(outcome, status="collapse", multiplier=traverse.answer, message=what + fall)
+    told = f"; {lead.fall(traverse)}" if fell else ""
+    told += ", and the answer is that of its last rest" if fell and lead.settles else ""
+    return replace(outcome, status="collapse", multiplier=traverse.answer, message=what + told)

@@ -82,8 +82,8 @@ def certify(
 ) -> Certificate | None:
     """Find the smallest and largest load that drive a mechanism; None if there are none.
 
-    `extreme` finds the forces for the aims
-    ``smallest`` and ``largest``, which are as exact as its results; without `extreme` they are proved.
+    `extreme` finds the forces for the aims ``smallest`` and ``largest``, which are as exact as its results; without
+    `extreme` they are proved.
     """
     forces = driving_forces(system, motion)
     if forces is None:

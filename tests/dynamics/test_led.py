@@ -691,17 +691,16 @@ def test_mechanism_that_has_just_formed_is_one(model: Any, moved: float) -> None
 
 
 @pytest.mark.parametrize(
-    ("force", "hardens"),
+    ("place", "force"),
     [
-        (np.interp(X, [0, 0.5, 0.6, 1], [0, 1, 0.6, 0.999]), True),
-        (np.interp(X, [0, 0.5, 0.6, 1], [0, 1, 0.6, 1.001]), True),
-        (np.interp(X, [0, 0.85, 0.9, 1], [0, 1, 0.5, 0.99]), True),
-        (np.interp(X, [0, 0.1, 0.5, 0.7, 0.72, 0.85, 0.87, 1], [0, 1, 0.98, 0.99, 0.96, 0.97, 0.94, 0.95]), False),
+        ([0, 0.5, 0.6, 1], [0, 1, 0.6, 0.999]),
+        ([0, 0.5, 0.6, 1], [0, 1, 0.6, 1.001]),
+        ([0, 0.85, 0.9, 1], [0, 1, 0.5, 0.99]),
     ],
 )
-def test_wall_hardens_again_below_its_peak_unless_it_loses_more(force: Array, hardens: bool) -> None:
-    """About as far as the peak, a straight rise counts; a saw of cracks that falls on the whole does not."""
-    assert (growth_left(np.column_stack([X, force])) > 0.2) == hardens
+def test_wall_that_hardens_again_to_about_its_peak_has_formed_no_mechanism(place: Any, force: Any) -> None:
+    """It goes on as steeply on a path twice as long, by as much as it has borne or more."""
+    assert growth_left(np.column_stack([X, np.interp(X, place, force)])) > 0.99
 
 
 def elastic(model: Any, tolerance: float) -> Outcome:

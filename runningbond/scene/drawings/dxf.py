@@ -1,6 +1,5 @@
 """Reader for DXF files: curves by layer, with INSERTs exploded, and a count of all other entities."""
 
-import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -26,9 +25,6 @@ VIEWPORT = "VIEWPORT"
 """Entity that shows the model on a sheet of the paper space; it draws nothing itself."""
 
 UNITS_KEY = "$INSUNITS"
-
-ESCAPED = re.compile(r"\\U\+([0-9A-Fa-f]{4})")
-"""A character that is missing in the code page. ezdxf before 1.4.4 writes these in small letters and reads capitals."""
 
 HEADER_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 """Units by their code in $INSUNITS."""
@@ -168,7 +164,9 @@ class _Walk:
 
 def _decoded(name: str) -> str:
     """Decode a name: files before DXF 2007 escape characters missing in their code page as a backslash and U+XXXX."""
-    return ESCAPED.sub(lambda found: chr(int(found[1], 16)), name)
+    from ezdxf.lldxf.encoding import decode_dxf_unicode
+
+    return str(decode_dxf_unicode(name))
 
 
 def _curve(entity: Any, layer: str, name: str) -> Drawn | None:
