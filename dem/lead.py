@@ -1,26 +1,23 @@
-"""What drives a wall: prescribed displacements of its beam or its supports, and the reaction to them."""
+"""What drives a wall from equilibrium to equilibrium, along a path of prescribed displacements."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
-from runningbond.limit.kinematics import control_row
-from runningbond.limit.settlement import largest_displacement, reaction_unit
+from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Scene
 
 from .pushover import StaticState
-from .static_system import Control, StaticSystem, dot
+from .static_system import Control, StaticSystem
 
 MIN_STEPS = 25
-"""Smallest number of steps in the longest leg of a path, from one reversal to the next, in the first run."""
+"""Smallest number of steps in the longest leg of a path, from one reversal to the next, in the first traverse."""
 
 STEP_GROWTH = 1.3
-"""Ratio of a step's length to that of the step before, up to the longest step, in the first run."""
-
-REGULARISATION = 1e-6
-"""Part of the elastic stiffness that open points keep in the tangent of a first guess, which makes it regular."""
+"""Ratio of a step's length to that of the step before, up to the longest step, in the first traverse."""
 
 
 def reaction(system: StaticSystem, state: StaticState) -> float:
@@ -33,53 +30,96 @@ def reaction(system: StaticSystem, state: StaticState) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class StaticLead:
-    """What drives a wall: the beam's drive, or the supports with a share of their settlement."""
+class StaticLead(ABC):
+    """What drives a wall along a path of prescribed values, and what its curve of displacements and forces says."""
+
+    may_lock: ClassVar[bool] = False  # whether joint forces may balance any multiple of the answer
 
     system: StaticSystem
     origin: StaticState  # at rest under the dead load
     first_step: float  # load of the first, elastic step
 
     @property
+    @abstractmethod
+    def answer(self) -> str:
+        """Name of the answer, the reaction of the drive [N] or a share of the dead load."""
+
+    @property
+    @abstractmethod
+    def least(self) -> float:
+        """Answer below which the tolerance of its bracket is absolute, not relative."""
+
+    @property
+    @abstractmethod
+    def metre(self) -> float:
+        """Displacement [m] at a value of 1."""
+
+    @property
+    @abstractmethod
+    def joule(self) -> float:
+        """Work on the wall [J] of a unit force along values from 0 to 1."""
+
+    @property
+    @abstractmethod
+    def goals(self) -> Array:
+        """Prescribed values at the ends of the path's legs, in order."""
+
+    @property
+    @abstractmethod
+    def elastic_step(self) -> float:
+        """Value of the elastic wall under `first_step`."""
+
+    @abstractmethod
+    def control(self, value: float) -> Control:
+        """Control equation that prescribes a value."""
+
+    @abstractmethod
+    def value(self, state: StaticState) -> float:
+        """Prescribed value in a state."""
+
+    @abstractmethod
+    def elastically(self, now: StaticState, value: float) -> Array:
+        """Unknowns at a value, if no further point opens and none slides farther."""
+
+    @abstractmethod
+    def answering(self, force: Array) -> int:
+        """Number of the state at which the answer is reached, from the forces of all ``(n,)``."""
+
+    @abstractmethod
+    def moving(self, value: Array) -> tuple[int, int]:
+        """Numbers of the states between which motion is drawn, from the values of all ``(n,)``."""
+
+    @abstractmethod
+    def reached(self, curve: Array) -> float:
+        """Displacement [m] up to which a curve ``(n, 2)`` goes."""
+
+    @abstractmethod
+    def growth_left(self, curve: Array) -> float:
+        """Force by which the answer of a curve ``(n, 2)`` may grow beyond the end of its path."""
+
+    @abstractmethod
+    def has_formed(self, curve: Array, *, tolerance: float, room: float) -> bool:
+        """Whether a mechanism has formed at the end of a curve ``(n, 2)``.
+
+        Its answer changes by less than a relative tolerance, or has at most `room` to grow, a part of that tolerance.
+        """
+
+    @abstractmethod
+    def unfinished(self, curve: Array) -> tuple[str, bool]:
+        """Note on a curve ``(n, 2)`` whose mechanism has not formed, and whether its answer can only become smaller."""
+
+    def other_way(self, curve: Array) -> str:
+        """Note on the largest reaction in the other direction; may be empty."""
+        return ""
+
+    def has_come_free(self, state: StaticState) -> bool:
+        """Whether supports that move carry nothing."""
+        return False
+
+    @property
     def scene(self) -> Scene:
         """The scene."""
         return self.system.equilibrium.scene
-
-    @property
-    def settles(self) -> bool:
-        """Whether supports are moved, not the beam."""
-        return self.scene.settlement is not None
-
-    @cached_property
-    def metre(self) -> float:
-        """Displacement [m] that counts as 1: the prescribed settlement, or the unit of f_live · q."""
-        if self.settles:
-            moved = float(control_row(self.scene) @ self.scene.support_motion.ravel())
-            return moved or largest_displacement(self.scene)
-        return self.system.equilibrium.force_unit / self.system.equilibrium.live_unit * self.system.length_unit
-
-    @cached_property
-    def joule(self) -> float:
-        """Work on the wall [J] of a unit force on a path of unit length."""
-        return -reaction_unit(self.scene) if self.settles else self.metre
-
-    @cached_property
-    def goals(self) -> Array:
-        """Prescribed values at the ends of the path's legs, in order."""
-        drive = self.scene.drive
-        if self.scene.settlement is not None:
-            return np.array(self.scene.settlement.path)
-        return np.ones(1) if drive is None else drive.force[0] * np.array(drive.path) / self.metre
-
-    @cached_property
-    def elastic_step(self) -> float:
-        """Length of the first step: the elastic wall's displacement, or share of settlement, under `first_step`."""
-        system = self.system
-        if system.support_jump is not None:
-            return self.first_step / float(np.abs(system.support_jump).max())
-        load = np.append(np.zeros(system.unknowns - 1), self.first_step)
-        step = system.solve(system.elastic, Control(self.first_step, multiplier=True), load)
-        return abs(dot(system.equilibrium.live, step[: system.freedoms]))
 
     def stops(self, share: float) -> Iterator[tuple[float, bool]]:
         """Yield the values to hold along the path, each with whether it begins a leg; `share` scales the steps."""
@@ -95,14 +135,6 @@ class StaticLead:
                 yield float(at + (goal - at) * length / lengths[-1]), k == 0
             at = goal
 
-    def control(self, value: float) -> Control:
-        """Control equation that prescribes a value."""
-        return Control(value if self.settles else self.origin.displacement + value, multiplier=self.settles)
-
-    def value(self, state: StaticState) -> float:
-        """Prescribed value in a state."""
-        return state.multiplier if self.settles else state.displacement - self.origin.displacement
-
     def force(self, state: StaticState) -> float:
         """Force in a state, as from `reaction`."""
         return reaction(self.system, state)
@@ -111,14 +143,3 @@ class StaticLead:
         """Unknowns at a value, extrapolated linearly from the last step."""
         ahead = (value - self.value(now)) / (self.value(now) - self.value(before))
         return np.asarray(now.x + ahead * (now.x - before.x))
-
-    def elastically(self, now: StaticState, value: float) -> Array:
-        """Unknowns at a value, if no further point opens and none slides farther."""
-        if self.settles:
-            return np.append(now.x[:-1], value)
-        response = self.system.respond(now.x, now.plastic_slip)
-        pressed = (response.normal != 0)[:, None, None]
-        tangent = self.system.elastic * np.where(pressed, 1.0, REGULARISATION)
-        ahead = self.control(value)
-        right = np.append(np.zeros(self.system.unknowns - 1), ahead.value - now.displacement)
-        return np.asarray(now.x + self.system.solve(tangent, ahead, right))

@@ -17,17 +17,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import LITTLE, formed, goes_both_ways, growth_left, shedding
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
-from runningbond.results.outcome import number
+from runningbond.results.outcome import joined, number
 from runningbond.results.reactions import COME_FREE
 
+from .beam_drive import StaticBeamDrive
 from .climb import BUDGET_SPENT, NO_VERDICT
 from .lead import StaticLead
-from .pushover import NOISE, LoadPath, StaticState, state_of
+from .pushover import LoadPath, StaticState, state_of
 from .relaxation import Rest
+from .support_settlement import StaticSettlement
 
 MAX_RUNS = 4
 """Number of runs, each in steps half as long as in the run before, after which a path is left undecided."""
@@ -103,7 +104,8 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     first_step
         Load of the first elastic step, in units of `Equilibrium`.
     """
-    lead = StaticLead(path.system, path.rests[0], first_step)
+    kind = StaticBeamDrive if path.system.support_jump is None else StaticSettlement
+    lead: StaticLead = kind(path.system, path.rests[0], first_step)
     runs: list[StaticTraverse] = []
     answers: list[float] = []
     for k in range(MAX_RUNS):
@@ -117,7 +119,7 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
             break
         runs.append(run)
         forces = [lead.force(state) for state in run.states]
-        answers.append(forces[-1] if lead.settles else max(forces))
+        answers.append(forces[lead.answering(np.array(forces))])
         if (run.stopped and not run.fell) or (k > 0 and _spread(lead, answers[-2:]) <= tolerance):
             break
     path.past = runs[-1].states[1:]
@@ -129,25 +131,18 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
 
 def _spread(lead: StaticLead, answers: list[float]) -> float:
     """Width of a bracket, relative to its larger end."""
-    return (max(answers) - min(answers)) / max(*map(abs, answers), _least(lead))
-
-
-def _least(lead: StaticLead) -> float:
-    """Force below which the tolerance of a bracket is absolute, not relative."""
-    return LITTLE if lead.settles else NOISE * lead.system.equilibrium.live_unit
+    return (max(answers) - min(answers)) / max(*map(abs, answers), lead.least)
 
 
 def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
     """Add curve, forces at the answer, and motion: of the fall, the settlement, or the drive's farthest step."""
     system, states = lead.system, run.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
-    most = int(force.argmax()) if not lead.settles else len(states) - 1
-    farthest = int((np.abs(value) if lead.settles else value).argmax())
     if run.fell and run.stopped is not None:
         moving = system.motion(np.append(run.stopped.last, np.zeros(system.unknowns - system.freedoms)))
     else:
-        before = states[0 if lead.settles else max(farthest - 1, 0)]
-        moving = system.motion(states[farthest].x) - system.motion(before.x)
+        before, after = lead.moving(value)
+        moving = system.motion(states[after].x) - system.motion(states[before].x)
     forces = [system.equilibrium.force_unit * state.force for state in states]
     dead = np.array([state.x[: system.freedoms] for state in states]) @ system.per_freedom(dead_load(lead.scene))
     live = np.append(0.0, np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(value))) * lead.joule
@@ -157,7 +152,7 @@ def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
         outcome,
         curve=np.column_stack([lead.metre * value, force]),
         motion=fastest_corner_by_one(lead.scene.blocks, moving) if moving.any() else np.zeros((0, 3)),
-        force=forces[most],
+        force=forces[lead.answering(force)],
         **held.path(forces, ties, force, np.column_stack([dead, live])),
     )
 
@@ -172,48 +167,29 @@ def _judge(
 ) -> Outcome:
     """Outcome with the verdict on the runs and its message; `cut` is where and why the last run was given up."""
     run, (lower, upper), at = runs[-1], (min(answers[-2:]), max(answers[-2:])), _at(lead, runs[-1])
-    what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its path"
-    what += f", in {len(run.states) - 1} steps" + (f" and in {len(runs[-2].states) - 1}" if len(runs) > 1 else "")
-    what += "; small displacements" + _notes(lead, outcome)
-    falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
+    steps = f"in {len(run.states) - 1} steps" + (f" and in {len(runs[-2].states) - 1}" if len(runs) > 1 else "")
+    what = joined(f"{lead.answer}, {steps}", "small displacements", lead.other_way(outcome.curve))
+    unfinished, falls = lead.unfinished(outcome.curve)
     so_far = replace(outcome, lower=None if falls else lower, upper=upper if falls else None)
     if run.stopped and not run.fell:
         return replace(so_far, message=f"no answer: {cut}; {what}")
-    supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
-    if lead.settles and not run.fell and supports.have_come_free(last.force, last.pull):
+    if not run.fell and lead.has_come_free(run.states[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
-    left = 0.0 if lead.settles or run.fell else growth_left(outcome.curve)
-    if lead.settles:
-        ends = run.fell or formed(outcome.curve, tolerance)
-    else:
-        room = tolerance - _spread(lead, [lower, upper])
-        ends, upper = left <= (room if room > 0 else tolerance) * max(upper, _least(lead)), upper + left
-    if ends and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
-        fall = f"; the wall falls at {at}, and the answer is that of its last rest" if run.fell else ""
-        return replace(
-            outcome, status="collapse", multiplier=answers[-1], lower=lower, upper=upper, message=what + fall
-        )
-    if ends and len(answers) == 1:
+    room = tolerance - _spread(lead, [lower, upper])
+    room = (room if room > 0 else tolerance) * max(upper, lead.least)
+    if not run.fell:
+        upper += lead.growth_left(outcome.curve)
+    if not run.fell and not lead.has_formed(outcome.curve, tolerance=tolerance, room=room):
+        reached = f"{number(answers[-1])} at {lead.reached(outcome.curve):.4g} m"
+        if lead.may_lock and is_self_locking(lead.scene):
+            message = f"self-locking: the drive takes {reached}, and joint forces balance any multiple of it; {what}"
+            return replace(outcome, status="unbounded", message=message)
+        return replace(so_far, message=f"no answer: {unfinished} {reached}; {what}")
+    if len(answers) == 1:
         message = f"no answer: {cut} in steps half as long, which are to say how sure it is; {what}"
         return replace(so_far, message=message)
-    if ends:
-        message = f"no answer: other steps change it by more than the tolerance; {what}"
-        return replace(outcome, lower=lower, upper=upper, message=message)
-    ended = outcome.curve[-1, 0] if lead.settles else outcome.curve[:, 0].max()
-    reached = f"{number(answers[-1])} at {ended:.4g} m"
-    if lead.settles:
-        message = f"no answer: the support still {changes} where its settlement ends, it bears {reached}; {what}"
-        return replace(so_far, message=message)
-    if is_self_locking(lead.scene):
-        message = f"self-locking: the drive takes {reached}, and joint forces balance any multiple of it; {what}"
-        return replace(outcome, status="unbounded", message=message)
-    message = f"no answer: the wall still hardens where its drive ends, which takes {reached}; {what}"
-    return replace(so_far, message=message)
-
-
-def _notes(lead: StaticLead, outcome: Outcome) -> str:
-    """Note on the reaction of a cyclic drive in the other direction; empty for others."""
-    if lead.settles or lead.scene.drive is None:
-        return ""
-    other = -float(outcome.curve[:, 1].min())
-    return f"; the other way it takes {number(other)}" if goes_both_ways(lead.goals) and other > 0 else ""
+    outcome = replace(outcome, lower=lower, upper=upper)
+    if _spread(lead, answers[-2:]) > tolerance:
+        return replace(outcome, message=f"no answer: other steps change it by more than the tolerance; {what}")
+    fall = f"the wall falls at {at}, and the answer is that of its last rest" if run.fell else ""
+    return replace(outcome, status="collapse", multiplier=answers[-1], message=joined(what, fall))

@@ -17,14 +17,18 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import joined, number
-from runningbond.results.reactions import AT_REST, COME_FREE, UNFELT, WORKS
+from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
+from .beam_drive import BeamDrive
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, Lead, Traverse, TraverseRow, formed, goes_both_ways, growth_left, late_growth, shedding
+from .lead import Lead
 from .push import Push
 from .run import CALMING, Observer, Run, Unstable
+from .state import State
+from .support_settlement import SupportSettlement
+from .traverse import BEAM, Traverse
 
 LEAST_STEPS, REST_MULTIPLE, REST_MULTIPLE_FINITE = 20_000, 20, 2
 """Fewest time steps of the longest leg in the first traverse if no rate is given, and their least multiple of the steps
@@ -82,11 +86,9 @@ def collapse_of_led(
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
         run.led = True
-        lead = Lead(scene, run, state, criteria, observe, points)
-        if not scene.is_led:
-            lead = _push(lead, distance, LOCKED if self_locking() else np.inf)
+        lead = _lead(scene, run, state, criteria, observe, points, distance, self_locking)
         for duration in _durations(lead, loaded.rest):
-            traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), not lead.settles))
+            traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), lead.moves))
             last = lead.go(traverse, lead.longest / duration)
             before, lead = lead, lead.after(traverse)
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
@@ -111,20 +113,32 @@ def collapse_of_led(
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(traverse.best)))
-    if outcome.status == "undecided" and outcome.upper is None and not lead.settles and self_locking():
+    if outcome.status == "undecided" and outcome.upper is None and lead.moves and self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
     return outcome
 
 
-def _push(lead: Lead, distance: float | None, most: float) -> Push:
-    """The push of a wall by its live load: over a distance [m], and up to `most` as a multiple of the dead load."""
-    scene, system = lead.scene, lead.run.system
+def _lead(
+    scene: Scene,
+    run: Run,
+    start: State,
+    criteria: Criteria,
+    observe: Observer,
+    points: JointPoints,
+    distance: float | None,
+    is_self_locking: Callable[[], bool],
+) -> Lead:
+    """How the displacements of a scene are applied; a push goes over a distance [m], a self-locking one not so far."""
+    if scene.is_led:
+        kind = BeamDrive if scene.settlement is None else SupportSettlement
+        return kind(scene, run, start, criteria, observe, points)
     low, high = scene.blocks.extent(scene.wall)
-    load = system.measure(system.live) or 1.0
-    given, side = (scene, lead.run, lead.start, lead.criteria, lead.observe, lead.points), float((high - low).min())
+    side = float((high - low).min())
+    most = LOCKED / (run.system.measure(run.system.live) or 1.0) if is_self_locking() else np.inf
     # Few walls move farther than their smaller side before they fall; those that do are pushed farther the next time.
-    return Push(*given, most / load, distance or side, min(distance or side, side))
+    reach = min(distance or side, side)
+    return Push(scene, run, start, criteria, observe, points, distance or side, most, reach)
 
 
 def _rate(scene: Scene) -> float | None:
@@ -139,9 +153,8 @@ def _durations(lead: Lead, rest: int) -> list[float]:
     if rate := _rate(lead.scene):
         return [lead.longest / (2 * rate), lead.longest / rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    unhurried = REST_MULTIPLE if lead.run.system.contacts is None else REST_MULTIPLE_FINITE
-    steps = max(LEAST_STEPS, unhurried * rest)
-    if lead.settles and lead.run.system.contacts is not None:
+    steps = max(LEAST_STEPS, (REST_MULTIPLE if lead.is_small else REST_MULTIPLE_FINITE) * rest)
+    if not (lead.moves or lead.is_small):
         steps *= FALL_MULTIPLE
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [steps * lead.run.dt * 2**k for k in range(runs)]
@@ -170,16 +183,6 @@ def _spread(lead: Lead, traverses: list[Traverse]) -> float:
     return (upper - lower) / max(-lower, upper, lead.least) if upper > lower else 0.0
 
 
-def _left(lead: Lead, traverse: Traverse) -> float:
-    """Force [N] by which the answer of a drive or push may grow beyond the end of its path, at small displacements.
-
-    At finite ones collisions and cracks make forces rise and fall, so that their slope says little.
-    """
-    if lead.settles or traverse.verdict == "collapse" or lead.run.system.contacts is not None:
-        return 0.0
-    return growth_left(lead.onward(lead.unbraked(traverse.curve)))
-
-
 def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
     """Whether half the speed would change the answer, and what else is reported, by less than the tolerance.
 
@@ -193,7 +196,7 @@ def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
     ended = all(traverse.verdict != "undecided" for traverse in traverses[-2:])
     if not ended or lead.apart(*traverses[-2:]) > tolerance:
         return False
-    left = _left(lead, traverses[-1]) / max(traverses[-1].answer, lead.least)
+    left = lead.growth_left(traverses[-1]) / max(traverses[-1].answer, lead.least)
     return _spread(lead, traverses) <= tolerance - (left if left < MUCH * tolerance else 0.0)
 
 
@@ -233,51 +236,25 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, travers
     return replace(outcome, curve=traverse.curve, path=path, path_columns=columns)
 
 
-def _has_come_free(lead: Lead, row: TraverseRow) -> bool:
-    """Whether the moving supports carry nothing at a place of a path."""
-    if lead.run.system.contacts is None:
-        return Supports(lead.scene, lead.points, lead.run.system.owner).have_come_free(row.carried, row.tie)
-    borne = np.hypot(*row.carried[:, :2].T)
-    return bool(borne[lead.scene.support_motion.any(axis=1)].max() <= UNFELT * borne.max())
-
-
 def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: float) -> Outcome:
     """Verdict on several traverses, of which the last is drawn."""
-    traverse = traverses[-1]
-    what = lead.answer
-    what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
-    if len(traverses) > 1 and (apart := lead.apart(*traverses[-2:])):
-        what += f", whose curves are {100 * apart:.2g} % of it apart until half of it is left"
-    other = -float(outcome.curve[:, 1].min())
-    if goes_both_ways(lead.goals) and other > 0 and not lead.settles:
-        what += f"; the other way it takes {number(other)}"
-    small = lead.run.system.contacts is None
-    what += f"; {'small' if small else 'finite'} displacements"
-    if lead.settles and not small and not lead.scene.joint.inset:
-        what += ", sharp corners: with a joint.inset they do not slip past each other"
-    what = joined(what, lead.before(outcome.curve), lead.read_at)
-    at = f"{abs(outcome.curve[-1, 0]) if lead.settles else np.abs(outcome.curve[:, 0]).max():.4g} m"
+    traverse, what = traverses[-1], _answer(outcome, lead, traverses)
+    at = f"{lead.reached(outcome.curve):.4g} m"
     if traverse.verdict == "undecided" or len(traverses) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
     if places := [each.fall for each in traverses[-2:] if each.fall is not None]:
         if not _fall_alike(traverses[-2], traverse, tolerance):
             return replace(outcome, message=f"no answer: another speed changes whether or where it falls; {what}")
         traverse.fall = min(rest for rest, _ in places), max(fall for _, fall in places)
-    least, most = _bracket(traverses)
+    least, most = bracket = _bracket(traverses)
     fell = traverse.verdict == "collapse"
-    if lead.settles and not fell and _has_come_free(lead, traverse.rows[-1]):
+    if not fell and lead.has_come_free(traverse.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
-    left, spread = _left(lead, traverse), _spread(lead, traverses)
-    outcome = replace(outcome, lower=least, upper=most + left)
-    if lead.settles:
-        ends = fell or formed(outcome.curve, tolerance, still=traverse.answer - least)
-    else:
-        room = tolerance - spread if spread <= tolerance else tolerance
-        scale, grown = max(traverse.answer, lead.least), late_growth(lead.onward(outcome.curve))
-        ends = fell or (grown <= tolerance * scale and left <= room * scale)
-    if not ends:
-        falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
-        still = f"the support still {changes}" if lead.settles else "the wall still hardens"
+    spread = _spread(lead, traverses)
+    outcome = replace(outcome, lower=least, upper=most + lead.growth_left(traverse))
+    room = tolerance - spread if spread <= tolerance else tolerance
+    if not fell and not lead.has_formed(traverse, bracket, tolerance, room):
+        still, falls = lead.unfinished(outcome.curve)
         still = f"{still} at the displacement asked for, {at}"
         if traverse.answer > lead.most:
             still = f"the wall bears more than {LOCKED:g} times its largest dead load"
@@ -290,5 +267,13 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
             why = f"{lead.fall(traverse)}, up to which it changes by more than the tolerance"
         return replace(outcome, message=f"no answer: {why}; {what}")
     told = f"; {lead.fall(traverse)}" if fell else ""
-    told += ", and the answer is that of its last rest" if fell and lead.settles else ""
+    told += "" if lead.moves or not fell else ", and the answer is that of its last rest"
     return replace(outcome, status="collapse", multiplier=traverse.answer, message=what + told)
+
+
+def _answer(outcome: Outcome, lead: Lead, traverses: list[Traverse]) -> str:
+    """Name of the answer, with how it was obtained and where displacements are read."""
+    what = lead.answer + (", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds")
+    if len(traverses) > 1 and (apart := lead.apart(*traverses[-2:])):
+        what += f", whose curves are {100 * apart:.2g} % of it apart until half of it is left"
+    return joined(what, lead.other_way(outcome.curve), lead.displacements, lead.before(outcome.curve), lead.read_at)

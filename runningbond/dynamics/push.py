@@ -14,11 +14,13 @@ import numpy as np
 from runningbond.results.outcome import number, two_digits
 from runningbond.scene import Array, Indices, Scene
 
-from .lead import LITTLE, LOSS, ROWS, STRIDE, Lead, Traverse
+from .lead import ROWS, STRIDE, Lead
+from .path_curve import LITTLE, LOSS
 from .peaks import Peaks
 from .run import CALMING, MOVING, Run
 from .state import State
 from .system import BlockSystem
+from .traverse import Traverse
 
 MOST_ROWS = 4
 """Most rows of a push, relative to the number needed if no block moves farther than the control point."""
@@ -72,14 +74,12 @@ class Push(Lead):
     The push ends earlier if the multiplier has fallen to zero: there the wall is at the limit of stability by itself.
     """
 
+    answer = "largest multiplier along the path"
+
     distance: float = np.inf
+    most: float = np.inf  # multiplier above which the wall is not pushed farther
     reach: float = np.inf  # expected displacement of the blocks that move farthest [m]; the distance, if unknown
     elsewhere: ControlPoint | None = None  # where displacements are read if the control point stays
-
-    @property
-    def answer(self) -> str:
-        """Name of the answer of a traverse."""
-        return "largest multiplier along the path"
 
     @property
     def least(self) -> float:
@@ -175,10 +175,6 @@ class Push(Lead):
     def onward(self, curve: Array) -> Array:
         """The curve, positive towards the final side of the control point: other loads may push the point back."""
         return curve * (np.sign(curve[-1, 0]) or 1.0, 1.0)
-
-    def unbraked(self, curve: Array) -> Array:
-        """The curve: a push does not brake."""
-        return curve
 
     def apart(self, fast: Traverse, slow: Traverse) -> float:
         """Mean distance of the curves at two speeds, until half of the answer is left, relative to the answer."""

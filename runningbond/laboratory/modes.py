@@ -11,7 +11,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from runningbond.dynamics.lead import TOE, failing
+from runningbond.dynamics.path_curve import failing
+from runningbond.dynamics.traverse import TOE
 from runningbond.joints import wall_points
 from runningbond.results import Outcome
 from runningbond.results.mechanism import carried, rigid_jumps

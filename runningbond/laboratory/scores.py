@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from runningbond.dynamics.lead import LOSS
+from runningbond.dynamics.path_curve import LOSS
 from runningbond.scene import Array
 
 from .measured import LARGER, SWING

@@ -12,7 +12,7 @@ from dem.dynamic import dem_dynamic
 from dem.finite_system import finite_system
 from runningbond.dynamics import Carried, Run, State
 from runningbond.dynamics.contact_update import contacts_of
-from runningbond.dynamics.lead import failing
+from runningbond.dynamics.path_curve import failing
 from runningbond.joints import wall_rule
 from runningbond.models import run_model
 from runningbond.pictures.recording import MotionRecorder

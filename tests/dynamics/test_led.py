@@ -1,7 +1,6 @@
 """Ties, driven beams and moving supports in the two dynamic models, against statics."""
 
 from itertools import pairwise
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,11 @@ from meshing import wall_mesh
 from runningbond import Wall
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.dynamics.lead import Lead, goes_both_ways, growth_left, windows_of_stage
+from runningbond.dynamics.path_curve import goes_both_ways, growth_left
 from runningbond.dynamics.peaks import Peaks
+from runningbond.dynamics.support_settlement import windows_of_stage
 from runningbond.dynamics.ties import tie_rows
+from runningbond.dynamics.toes import Toes
 from runningbond.joints import joint_stiffness, wall_points
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.pictures.recording import MotionRecorder
@@ -249,13 +250,11 @@ def test_toes_of_symmetric_wall_are_mirror_images(width: float, height: float, c
     beam = {"height": 0.1, "condition": "free", "force": [0, -N], "drive": {"displacement": [1e-3, 0]}}
     scene = panel(wall=size | {"thickness": 0.1}, joint__mortar=MORTAR, load__live=None, beam=beam)
     points = wall_points(scene)
-    nothing: Any = None
+    wall_toes = Toes(scene, points)
     toes: list[Array] = []
-    for moved in (-1.0, 1.0):
-        broken = []
-        for crushed in np.eye(len(points)):
-            run: Any = SimpleNamespace(at_joints=lambda _, crushed=crushed: (*np.zeros((5, len(crushed))), crushed))
-            broken.append(Lead(scene, run, nothing, nothing, nothing, points).broken_toe(nothing, moved) > 0)
+    for towards in (False, True):
+        whole = np.zeros(len(points))
+        broken = [wall_toes.broken(whole, whole, crushed, right=towards) > 0 for crushed in np.eye(len(points))]
         toes.append(points.position[broken] / [4 * width, courses * height])
     left, right = (sorted(map(tuple, np.round(places, 6).tolist())) for places in (toes[0], toes[1] * [-1, 1] + [1, 0]))
     assert left == right

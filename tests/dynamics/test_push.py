@@ -13,8 +13,8 @@ from fem_interface.model import fem
 from runningbond import Wall
 from runningbond.dynamics import Run, State
 from runningbond.dynamics.contact_update import ContactUpdate
-from runningbond.dynamics.lead import Traverse, TraverseRow
 from runningbond.dynamics.push import Push
+from runningbond.dynamics.traverse import Traverse, TraverseRow
 from runningbond.joints import wall_points
 from runningbond.limit import limit_nonassociated
 from runningbond.limit.kinematics import jump_operator

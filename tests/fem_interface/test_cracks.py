@@ -1,8 +1,7 @@
 """Cracks inside deformable blocks: triangles joined by inner joints with a strength of their own."""
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +17,7 @@ from fem_interface.system import system_of
 from meshing import wall_mesh
 from runningbond.draws.scatter import Scatter
 from runningbond.dynamics import Criteria, Run, State, settle
-from runningbond.dynamics.lead import Lead
+from runningbond.dynamics.toes import Toes
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.joints.softening import DAMAGE
 from runningbond.scene import (
@@ -397,8 +396,7 @@ def test_cracks_between_triangles_count_as_inner_joints_at_toes() -> None:
     """As the joints on block axes, which the scene numbers; joints between blocks do not count."""
     scene = wall(STRONG)
     found = modal_wall(scene, 2, cracks="blocks")
-    lead = cast(Lead, SimpleNamespace(scene=scene, points=found.elements.points))
-    inner = cast(Any, vars(Lead)["_is_inner"]).func(lead)
+    inner = Toes(scene, found.elements.points).is_inner
     assert np.array_equal(inner, found.scene.joints.inner[found.elements.points.joint])
     assert inner.sum() > scene.joints.inner.sum() > 0
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from runningbond.dynamics.lead import TOE, failing
+from runningbond.dynamics.path_curve import failing
+from runningbond.dynamics.traverse import TOE
 from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.formulas import by_hand, formula
 from runningbond.laboratory.ladder import LADDER, find_rungs

@@ -1,0 +1,124 @@
+"""How a beam is driven along its path at a slow speed."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from runningbond.scene import Array
+
+from .lead import RAMP, ROWS, STRIDE, Lead, pace
+from .path_curve import BEAM_ANSWER, growth_left, other_way
+from .peaks import Peaks
+from .state import State
+from .toes import Toes
+from .traverse import Traverse
+
+LEAST_ROWS = 40
+"""Smallest number of rows in any leg."""
+
+
+@dataclass(frozen=True, eq=False)
+class BeamDrive(Lead):
+    """How the beam of a scene is driven."""
+
+    answer = BEAM_ANSWER
+
+    @cached_property
+    def first_move(self) -> float:
+        """Sense of the first move: 1, or -1 to the left."""
+        if self.scene.drive is None:
+            raise TypeError("the scene has no driven beam")
+        return self.scene.drive.force[0]
+
+    @cached_property
+    def goals(self) -> Array:
+        """Displacements along the first move [m], one after the other."""
+        return self.first_move * np.array(self.scene.drive_path)
+
+    @cached_property
+    def beam(self) -> int:
+        """Number of the block that is the beam."""
+        if self.scene.beam is None or self.scene.beam.block is None:
+            raise TypeError("only a beam is driven")
+        return self.scene.beam.block
+
+    @cached_property
+    def _toes(self) -> Toes:
+        return Toes(self.scene, self.points)
+
+    def of_beam(self, state: State, moved: float) -> tuple[float, ...]:
+        """`BEAM` in a state; the toe is the one on the side towards which the wall is pushed."""
+        run = self.run
+        _, uplift, rotation = run.system.motion_of_blocks(state.motion - self.start.motion)[self.beam]
+        opening, *_, damage, crushed = run.at_joints(state)
+        broken = self._toes.broken(opening, damage, crushed, right=moved * self.first_move >= 0)
+        return rotation, uplift, run.ledger(state).friction, broken
+
+    def other_way(self, curve: Array) -> str:
+        """Note on the largest reaction in the other direction of a cyclic drive."""
+        return other_way(self.goals, curve)
+
+    def growth_left(self, traverse: Traverse) -> float:
+        """Force [N] by which the answer may grow beyond the end of the path, at small displacements.
+
+        At finite ones collisions and cracks make forces rise and fall, so that their slope says little.
+        """
+        if traverse.verdict == "collapse" or not self.is_small:
+            return 0.0
+        return growth_left(self._unbraked(traverse.curve))
+
+    def _unbraked(self, curve: Array) -> Array:
+        """A curve ``(n, 2)`` without the rows in which the drive brakes before it turns or ends: blocks push it on."""
+        senses = np.sign(np.diff(curve[:, 0]))
+        turns = np.append(np.flatnonzero(senses[1:] * senses[:-1] < 0) + 1, len(curve) - 1)
+        braking = turns[:, None] - np.arange(RAMP + 1)
+        return np.delete(curve, braking[braking > 0], axis=0)
+
+    def go(self, traverse: Traverse, speed: float) -> State:
+        """Drive the beam along its path at a largest speed [m/s]; return the state at its end."""
+        run, state, at = self.run, self.start.copy(), 0.0
+        self.observe(run, state, 0.0)
+        self.note(traverse, state, 0.0, 0.0)
+        mobility = float((run.system.live**2 / run.system.mass).sum())
+        given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]
+        peaks = Peaks(traverse.best, self.longest / (ROWS * speed * run.dt))
+        for goal in self.goals.tolist():
+            if goal == at or traverse.verdict != "stable":
+                continue
+            n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
+            paces = pace(n, peaks.windows)
+            steps = max(peaks.windows, round(abs(goal - at) / (speed * run.dt * paces.mean(axis=1).sum())))
+            lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows)
+            top = (goal - at) / (run.dt * float((paces @ lengths).sum()))
+            for k, parts in enumerate(paces.tolist()):
+                for window, (part, length) in enumerate(zip(parts, lengths.tolist(), strict=True), start=1):
+                    before, gathered = run.driven_speed(state), self._gathered(state)
+                    force = run.drive(state, top * part, length, given=given)
+                    force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
+                    # At finite displacements blocks collide all the time, which means over rows average out.
+                    knock = not self.is_small and k >= RAMP
+                    inertia = 0.0 if knock else (self._gathered(state) - gathered) / (length * run.dt)
+                    peaks.see(force, inertia, length, state, len(traverse.rows) + (window > peaks.windows // 2))
+                    if window == peaks.windows // 2:
+                        middle = state.copy()
+                # The mean force of a row belongs to the middle of the row.
+                self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
+                seen.append((middle.motion, self.crushed(middle)))
+                if (k + 1) % STRIDE == 0:
+                    self.observe(run, state, traverse.rows[-1].force)
+                if self.falls(state):
+                    traverse.verdict = "collapse"
+                    break
+            at = goal
+            self.note(traverse, state, self.moved(state), traverse.rows[-1].force)
+            seen.append((state.motion.copy(), self.crushed(state)))
+        self.conclude(traverse, peaks, seen)
+        return state
+
+    def _gathered(self, state: State) -> float:
+        """Momentum along the drive of all bodies except the beam, including what damping dissipates meanwhile [N s]."""
+        system = self.run.system
+        along = system.rigid[system.owner != self.beam, 0]
+        along = along[np.isfinite(system.mass[along])]
+        return float(system.mass[along] @ state.velocity[along]) / (1 - self.run.local)
