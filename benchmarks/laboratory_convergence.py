@@ -43,7 +43,7 @@ def follow(scene: Scene, step: float, points: int | None) -> tuple[Marks, float]
         at = contact_points(scene)
 
         def observe(run: Run, state: State, multiplier: float) -> None:
-            if run.led:
+            if run.is_driven:
                 lost.append(run.unaccounted(state))
 
         outcome = collapse_by_steps(

@@ -23,8 +23,8 @@ from runningbond.dynamics import (
     with_highest_frequency,
 )
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.dynamics.displacements import Displacements, are_finite
 from runningbond.dynamics.push import finite_run
-from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import bears_dead_load, given_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
@@ -65,7 +65,7 @@ def dem_dynamic(
         As returned by `collapse_by_steps`.
     """
     check_scene(scene)
-    finite = is_finite(displacements, "dem-dynamic", scene, distance)
+    finite = are_finite(displacements, "dem-dynamic", scene, distance)
     if scene.history:
         return critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), tolerance, observe=observe)
     start = time.perf_counter()

@@ -19,7 +19,7 @@ from runningbond.contacts.rigid_sides import (
 )
 from runningbond.contacts.search import ContactForces, Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface, moving_far
-from runningbond.dynamics.rig import check_finite
+from runningbond.dynamics.displacements import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
 from runningbond.joints.frames import keep_frames, reframe_along

@@ -24,8 +24,8 @@ from runningbond.dynamics import (
     no_observer,
 )
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.dynamics.displacements import Displacements, are_finite
 from runningbond.dynamics.push import finite_run
-from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import CALMING
 from runningbond.joints import JointPoints, Rule, listed_points, wall_points
 from runningbond.joints.wall_law import with_impacts
@@ -113,7 +113,7 @@ def fem(
     words = (("points", points, PointsOn), ("cracks", cracks, Cracks), ("loads", loads, Loads))
     for setting, word, known in (*words, ("energies", energies, Energies)):
         one_of(f"model fem: {setting}", word, get_args(known))
-    finite = is_finite(displacements, "fem", scene, distance) or bool(scene.history)
+    finite = are_finite(displacements, "fem", scene, distance) or bool(scene.history)
     if finite:
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):

@@ -12,7 +12,7 @@ import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
-from runningbond.dynamics.rig import check_finite
+from runningbond.dynamics.displacements import check_finite
 from runningbond.joints.points import trapezoids
 from runningbond.joints.wall_points import BETWEEN, spreads
 from runningbond.scene import Array, Indices, Scene

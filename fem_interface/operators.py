@@ -32,7 +32,6 @@ from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 PointsOn: TypeAlias = Literal["elements", "joints"]
 """What a quadrature rule is applied to: every joint element, or every whole joint, however many elements it has."""
 
-
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3}
 """Triangle elements by the polynomial degree of their displacement; those of degree 1 have constant strain."""
 

@@ -1,16 +1,15 @@
 """A wall in Python: the tables of a scene file, with the same checks; changed by copies, run and drawn."""
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 from warnings import warn
 
-import numpy as np
 from numpy.typing import NDArray
 
+from .descriptions import as_in_a_file, keys_of_name, merge, merge_changes
 from .scene import Scene, SceneError, plausibility, read_description, scene_from_dict
 from .scene.errors import abbreviated
 from .scene.ranges import path_of, suggestion
@@ -83,7 +82,7 @@ class Wall:
     def __init__(self, description: Mapping[str, Any], folder: str | Path = ".") -> None:
         if not isinstance(description, Mapping):
             raise SceneError("description", "must be a mapping of the tables of a scene file", description)
-        self._description: dict[str, Any] = _as_in_a_file(description)
+        self._description: dict[str, Any] = as_in_a_file(description)
         self.folder = path_of("folder", folder).absolute()  # the current folder may change later
         self.scene  # noqa: B018 - built at once, so that errors are raised where the description is written
 
@@ -209,11 +208,11 @@ class Wall:
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
         given = {"wall": {key: value for key, value in wall.items() if value is not None}}
-        description = _changed({"title": title, "wall": {}, **DEFAULTS}, [given, *tables])
+        description = merge_changes({"title": title, "wall": {}, **DEFAULTS}, [given, *tables])
         beam, load = (description.get(name) for name in ("beam", "load"))
         is_moved = (isinstance(beam, Mapping) and "drive" in beam) or (isinstance(load, Mapping) and "history" in load)
         if is_moved and not any("live" in named for table in tables if isinstance(named := table.get("load"), Mapping)):
-            description = _merged(description, {"load": {"live": None}})
+            description = merge(description, {"load": {"live": None}})
         return cls(description)
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Wall":
@@ -240,7 +239,7 @@ class Wall:
         if not isinstance(changes, Mapping | None):
             raise SceneError("with_", 'takes values by the full names of keys, {"joint.friction": 0.7}', changes)
         for name, value in (changes or {}).items():
-            path = _path(name, self._description) if isinstance(name, str) else [""]
+            path = keys_of_name(name, self._description) if isinstance(name, str) else [""]
             if "" in path:
                 raise SceneError("with_", 'takes keys by their full names, "joint.friction"', name)
             _check_has_its_table(name, value)
@@ -253,12 +252,12 @@ class Wall:
             if "." in full_name:
                 raise SceneError(name, f'is within a table; give it as {{"{full_name}": {abbreviated(value)}}}', value)
             _check_has_its_table(name, value)
-        return Wall(_changed(self._description, [*nested_changes, tables]), self.folder)
+        return Wall(merge_changes(self._description, [*nested_changes, tables]), self.folder)
 
     @property
     def description(self) -> dict[str, Any]:
         """A copy of the contents of the scene file, as nested dictionaries."""
-        copy: dict[str, Any] = _as_in_a_file(self._description)
+        copy: dict[str, Any] = as_in_a_file(self._description)
         return copy
 
     @cached_property
@@ -452,86 +451,3 @@ def _check_has_its_table(name: str, value: object) -> None:
 
     if table != "wall" or is_key_of(table, name):
         raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {abbreviated(value)}}}', value)
-
-
-def _as_in_a_file(value: Any) -> Any:
-    """A copy of nested values in the types of a TOML file, which has no None; objects of other types as they are."""
-    if isinstance(value, Mapping):
-        return {str(key): _as_in_a_file(inner) for key, inner in value.items() if inner is not None}
-    if isinstance(value, (list, tuple)):
-        return [_as_in_a_file(inner) for inner in value]
-    if hasattr(value, "__array__"):
-        array = np.asarray(value)  # an object array holds, for example, polygons of unequal numbers of corners
-        return [_as_in_a_file(inner) for inner in array] if array.dtype == object and array.ndim else array.tolist()
-    return str(value) if isinstance(value, Path) else value
-
-
-def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """A description with nested tables put in, in any order; a key that occurs in two of them is refused."""
-    together: dict[str, Any] = {}
-    for change in changes:
-        together = _together(together, change)
-    return _merged(description, together)
-
-
-def _together(one: Mapping[Any, Any], other: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
-    """The keys of two nested tables; a key that occurs in both raises a `SceneError`."""
-    together = dict(one)
-    for key, value in other.items():
-        before, full_name = together.get(key), _full_name(name, key)
-        if key not in together:
-            together[key] = value
-        elif isinstance(before, Mapping) and isinstance(value, Mapping):
-            together[key] = _together(before, value, full_name)
-        else:
-            raise SceneError(full_name, "is given twice; give it once", value)
-    return together
-
-
-def _full_name(name: str, key: str | int) -> str:
-    """The name of a key of a named table, or of an entry of a named list by its number."""
-    if isinstance(key, int):
-        return f"{name}[{key}]"
-    return f"{name}.{key}" if name else key
-
-
-def _path(name: str, table: Mapping[Any, Any]) -> list[str | int]:
-    """Keys and list indices that a full name consists of; existing keys may contain dots."""
-    known = [key for key in table if f"{name}.".startswith(f"{key}.")]
-    key = max(known, key=len, default=name.partition(".")[0])
-    rest, path, inner = name[len(key) + 1 :], [key], table.get(key)
-    numbered = re.fullmatch(r"(.+?)((?:\[\d+\])+)", key)
-    if inner is None and numbered and isinstance(table.get(numbered[1]), list):
-        numbers = [int(number) for number in re.findall(r"\d+", numbered[2])]
-        path, inner = [numbered[1], *numbers], table[numbered[1]]
-        for number in numbers:
-            inner = inner[number] if isinstance(inner, list) and number < len(inner) else None
-    if key == name:
-        return path
-    return [*path, *_path(rest, inner if isinstance(inner, Mapping) else {})]
-
-
-def _merged(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
-    """A table with the keys of another put in or, if they are None, removed; list entries are changed by index."""
-    merged = dict(old)
-    for key, value in new.items():
-        before, full_name = merged.get(key), _full_name(name, key)
-        if isinstance(key, int) and key not in old:
-            raise SceneError(full_name, f"is not there; {name} has {len(old)}, numbered from 0", value)
-        numbered = isinstance(key, str) and key not in old and re.fullmatch(r"(.+?)\[\d+\]", key)
-        if numbered and isinstance(old.get(numbered[1]), Mapping):
-            only = _full_name(name, numbered[1])
-            raise SceneError(full_name, f"is no entry of a list: {only} is one table, whose keys are {only}.…", value)
-        if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material named kind
-            if not isinstance(before, list):
-                merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, full_name)
-            elif value and all(isinstance(number, int) for number in value):
-                merged[key] = list(_merged(dict(enumerate(before)), value, full_name).values())
-            else:
-                what = f"is a list, which is changed as a whole, or by entry, {full_name}[0]"
-                raise SceneError(full_name, what, before)
-        elif value is None:
-            merged.pop(key, None)
-        else:
-            merged[key] = value
-    return merged

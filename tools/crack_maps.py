@@ -39,7 +39,7 @@ class LastLook:
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Store jumps, motion and wall of a state."""
-        if not run.led:
+        if not run.is_driven:
             return
         opening, slip, *_ = run.at_joints(state)
         crushed = state.history[run.interface.law.law.row(PLASTIC_CLOSURE)]

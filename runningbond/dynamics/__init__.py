@@ -2,8 +2,8 @@
 
 from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
-from .controls import Pushover, drive, ramp, settled_drive
 from .dead_load import fall_under_dead_load, put_on_dead_load
+from .growth import ramp
 from .highest_frequency import with_highest_frequency
 from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_scaling
 from .load_stepping import LoadSteps, load_steps
@@ -40,7 +40,6 @@ __all__ = [
     "Interface",
     "LoadSteps",
     "Observer",
-    "Pushover",
     "Restraint",
     "Run",
     "State",
@@ -48,7 +47,6 @@ __all__ = [
     "beam_note",
     "block_frequency_squared",
     "collapse_by_steps",
-    "drive",
     "fall_under_dead_load",
     "force_unit",
     "inertia_factors",
@@ -64,7 +62,6 @@ __all__ = [
     "restrain",
     "rigid_frequency_squared",
     "settle",
-    "settled_drive",
     "stable_step",
     "tie_rows",
     "with_highest_frequency",

@@ -17,12 +17,13 @@ from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
 from .kernel_calls import advance, gather, reframe, respond, scatter
-from .rig import turn_live, turn_loads, turn_rig, turn_supports, work_of_turned
+from .rig import turn_rig
 from .ties import pull
+from .turning_loads import turn_live, turn_loads, work_of_turned
+from .turning_supports import turn_supports
 from .update import Modes, StateArrays
 
 kernel, inlined, copy_into = compiled.kernel, compiled.inlined, compiled.copy_into
-
 
 Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 """Buffers: motion and load ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
@@ -160,7 +161,7 @@ def _at_constant_loads(
     """The steps of `step` during which loads are constant."""
     dt, local, joint_viscosity = scales
     addresses, geometry, parameters, modes, restraint, ties, far, memory, state, work, frames = arrays
-    rig, turning, pushing, leaning = far
+    rig, dead_loads, live_loads, supports = far
     _, _, mobility = modes
     motion, velocity, history, _, force = state
     freedom, basis = restraint
@@ -168,7 +169,7 @@ def _at_constant_loads(
     already, given, most = watch
     at_gather, at_reframe, at_law, at_scatter, at_update = addresses
     driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[6].size > 0, rig[0].size > 0
-    turns, pushes = turning[2].size > 0, driven and pushing[2].size > 0
+    turns, pushes = dead_loads[2].size > 0, driven and live_loads[2].size > 0
     response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if driven:
         for i in range(live.size):
@@ -199,14 +200,14 @@ def _at_constant_loads(
             for k in range(3):
                 response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
         if turns:
-            turn_loads(turning, motion, force)
+            turn_loads(dead_loads, motion, force)
         if pushes:
-            turn_live(pushing, motion, live)
+            turn_live(live_loads, motion, live)
             response = 0.0
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
         if carried:
-            turn_supports(leaning, motion, live)
+            turn_supports(supports, motion, live)
             pressed = _carry(live, speed, velocity, force)
             total += pressed
             worked -= pressed * speed * dt
@@ -223,7 +224,7 @@ def _at_constant_loads(
             worked += turned
             rig[3][0] += turned
         if turns:
-            worked += work_of_turned(turning, velocity, dt)
+            worked += work_of_turned(dead_loads, velocity, dt)
         due = (already + taken + 1) % LOOK == 0 and given < np.inf
         if due and not _is_stable(given + worked, load, modes, state, most):
             return taken + 1, False, total, worked

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import joined
 from runningbond.scene import Array, Indices, Scene
 
-from .collapse import U_CRIT, Criteria
+from .collapse import U_CRIT, Criteria, crushing_note
 from .dead_load import fall_under_dead_load
 from .inertia import beam_note
 from .led import UNACCOUNTED, collapse_of_led
@@ -127,8 +126,19 @@ def collapse_by_steps(
         # A second thread of the linear algebra gains nothing on blocks this small, and waits at every step.
         with threadpool_limits(limits=1, user_api="blas"):
             if scene.is_led or run.system.contacts is not None:
-                led = partial(collapse_of_led, outcome, scene, run, tolerance, points, point_order)
-                outcome = led(is_self_locking, bears, criteria, observe, distance)
+                outcome = collapse_of_led(
+                    outcome,
+                    scene,
+                    run,
+                    tolerance,
+                    points=points,
+                    point_order=point_order,
+                    is_self_locking=is_self_locking,
+                    bears=bears,
+                    criteria=criteria,
+                    observe=observe,
+                    distance=distance,
+                )
                 return replace(outcome, message=joined(outcome.message, note))
             result, above = LoadSteps(interrupted=True), None
             with suppress(KeyboardInterrupt):
@@ -150,10 +160,11 @@ def collapse_by_steps(
         outcome = replace(outcome, status="undecided", message=message, motion=np.zeros((0, 3)))
     elif outcome.status == result.verdict == "undecided" and not result.interrupted:
         note = joined(note, f"each load was followed for at most {budget * run.dt:.2g} s")
-    long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
     state = result.fallen or result.borne
-    crushed = "" if state is None else run.crushing_note(state)
-    long = long if run.dt > run.safe_step else ""
+    crushed = "" if state is None else crushing_note(run, state)
+    long = ""
+    if run.dt > run.safe_step:
+        long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
     return replace(outcome, message=joined(outcome.message, note, long, stiffness, crushed))
 
 

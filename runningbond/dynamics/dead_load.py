@@ -15,7 +15,7 @@ from runningbond.joints.law import PLASTIC_CLOSURE, KernelLaw
 from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, settle
-from .controls import ramp
+from .growth import ramp
 from .run import Observer, Run, no_observer
 from .state import State
 
@@ -102,7 +102,7 @@ def _has_slid(run: Run, state: State) -> bool:
 def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: float = SUDDEN_PART) -> UnderDeadLoad:
     """Apply a part of the dead load at once, and the rest evenly."""
     state, system = State.at_rest(run.system), run.system
-    grown = replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None, pushing=None)
+    grown = replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None, turning_live=None)
     growing = run.of_system(grown)
     shares = np.linspace(part, 1.0, (TIGHTENINGS if len(system.ties) else 1) + 1)
     _tighten(run, state, (part - 1.0) * system.ties.slack)

@@ -7,7 +7,6 @@ import numpy as np
 from runningbond.scene import Array
 
 from .collapse import Criteria
-from .controls import ramp
 from .run import Run
 from .state import State
 
@@ -33,6 +32,11 @@ away. A wall with weight would chatter at such loads without end; slow growth su
 
 PAUSE_INTERVAL = 200
 """Time steps of a pause between two checks."""
+
+
+def ramp(run: Run, state: State, start: float, stop: float, steps: int) -> None:
+    """Raise the multiplier evenly from `start` to `stop` over a number of steps, in place."""
+    run.hold(state, start, steps, rise=(stop - start) / steps, given=run.given(state))
 
 
 @dataclass(eq=False)

@@ -21,7 +21,7 @@ from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
 from .beam_drive import BeamDrive
-from .collapse import Criteria
+from .collapse import Criteria, crushing_note
 from .dead_load import fall_under_dead_load, put_on_dead_load
 from .lead import Lead
 from .push import Push
@@ -54,13 +54,14 @@ def collapse_of_led(
     scene: Scene,
     run: Run,
     tolerance: float,
+    *,
     points: JointPoints,
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     bears: Callable[[], bool],
     criteria: Criteria,
     observe: Observer,
-    distance: float | None = None,
+    distance: float | None,
 ) -> Outcome:
     """Apply the displacements of a scene to a wall; arguments not described here are as in `collapse_by_steps`.
 
@@ -85,7 +86,7 @@ def collapse_of_led(
         if verdict == "undecided":
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
-        run.led = True
+        run.is_driven = True
         lead = _lead(scene, run, state, criteria, observe, points, distance, self_locking)
         for duration in _durations(lead, loaded.rest):
             traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), lead.moves))
@@ -112,7 +113,7 @@ def collapse_of_led(
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, traverses, tolerance)
-    outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(traverse.best)))
+    outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
     if outcome.status == "undecided" and outcome.upper is None and lead.moves and self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)

@@ -16,11 +16,13 @@ from runningbond.scene import ANCHOR, Array
 from .central_differences import CONTROLS, Control, Watch, step
 from .contact_update import ContactUpdate, contacts_of
 from .kernel_calls import Addresses, addresses
-from .rig import NO_RIG, NO_TURNING_LOADS, NO_TURNING_SUPPORTS, turn_live, turn_loads, turn_rig
+from .rig import NO_RIG, turn_rig
 from .state import PLASTIC_SLIP, State
 from .system import BlockSystem, Interface
 from .ties import YIELD
 from .time_step import stable_step
+from .turning_loads import NO_TURNING_LOADS, turn_live, turn_loads
+from .turning_supports import NO_TURNING_SUPPORTS
 from .update import Damping, update_of
 
 LOCAL, VISCOUS = 0.5, 0.1
@@ -108,13 +110,13 @@ class Run:
         self._advance_modes, self._memory = update_of(system, damping)
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
-        self._turning, self._pushing = (
+        self._turning_dead, self._turning_live = (
             (loads.points.arrays, *loads[1:])
-            for loads in (system.turning or NO_TURNING_LOADS, system.pushing or NO_TURNING_LOADS)
+            for loads in (system.turning_dead or NO_TURNING_LOADS, system.turning_live or NO_TURNING_LOADS)
         )
-        self._leaning = tuple(system.leaning or NO_TURNING_SUPPORTS)
+        self._turning_supports = tuple(system.turning_supports or NO_TURNING_SUPPORTS)
         self._ties = *system.ties[:4], system.ties.ends.arrays, system.ties.length
-        self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
+        self.is_driven = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
         self._update = None if search is None else ContactUpdate(system, search)
@@ -198,7 +200,7 @@ class Run:
         Unstable
             As soon as an energy check fails; the state is left as it is then.
         """
-        if self.system.pushing is not None and (multiplier or rise):
+        if self.system.turning_live is not None and (multiplier or rise):
             raise ValueError("live loads at points of bodies that turn do not stay as they are; they may drive")
         load = dead * self.system.dead + multiplier * self.system.live
         self._advance("held", state, load, rise, steps, given)
@@ -228,8 +230,8 @@ class Run:
             raise ValueError("modes that have inertia in common bear a load alone")
         live = system.carried.motion if control == "carried" else system.live
         if control == "carried":
-            live = live.copy() if system.leaning else live
-        elif system.rig is not None or system.pushing is not None:
+            live = live.copy() if system.turning_supports else live
+        elif system.rig is not None or system.turning_live is not None:
             live = self._live()  # the live load rotates with the beam or with blocks
         more = None if control == "driven" else speed * steps if control == "held" else 0.0
         for piece in self._pieces(state, steps, load, more):
@@ -250,8 +252,8 @@ class Run:
 
     def _live(self) -> Array:
         """A copy of the live load of the undeformed wall at λ = 1, to be rotated."""
-        if self.system.pushing is not None:
-            self.system.pushing.more[:] = 0.0
+        if self.system.turning_live is not None:
+            self.system.turning_live.more[:] = 0.0
         return self.system.live.copy()
 
     def _take(
@@ -264,10 +266,10 @@ class Run:
         scales = (self.dt, self.local, self._viscosity)
         ties = (*self._ties, state.stretch)
         frames = (state.bears, self._plastic)
-        far = (self._rig, self._turning, self._pushing, self._leaning)
+        far = (self._rig, self._turning_dead, self._turning_live, self._turning_supports)
         every = (self._addresses, *self._arrays, ties, far, self._memory, arrays, self._work, frames)
         found: tuple[int, bool, float, float] = step(number, steps, scales, load, live, speed, every, watch)
-        for moments in (self.system.rig, self.system.turning):
+        for moments in (self.system.rig, self.system.turning_dead):
             if moments is not None:
                 state.turned += float(moments.work[0])
                 moments.work[0] = 0.0
@@ -366,15 +368,6 @@ class Run:
         law.kernel(opening, slip, law.parameters, state.history.copy(), 0.0, normal, tangential)
         return opening, slip, normal, tangential
 
-    def crushing_note(self, state: State) -> str:
-        """Note on joints that are crushed in a state; empty if none is."""
-        crushed = self.interface.law.crushed(state.history).any()
-        return (
-            "crushed joints carry bending at points, with an error of 3 to 5 % that the bracket does not include"
-            if crushed
-            else ""
-        )
-
     def at_joints(self, state: State) -> Array:
         """Opening, slip [m], normal, tangential force [N], damage, plastic closure [m] of joints' points, ``(6, n)``.
 
@@ -409,9 +402,9 @@ class Run:
         if search is None:
             raise TypeError("resultants are those at finite displacements")
         moment = turn_rig(self._rig, state.motion, live) if system.rig else 0.0
-        turn_live(self._pushing, state.motion, live)
+        turn_live(self._turning_live, state.motion, live)
         loads = system.dead + multiplier * live
-        turn_loads(self._turning, state.motion, loads)
+        turn_loads(self._turning_dead, state.motion, loads)
         total = loads[system.rigid]
         if system.rig:
             total[system.rigid[:, 0] == system.rig.freedom[0], 2] += moment

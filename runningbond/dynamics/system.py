@@ -22,8 +22,10 @@ from runningbond.scene import Array, Forces, Indices, Mask, Scene
 
 from .body_points import BodyPoints, Deformation, body_points, rigid_body
 from .clusters import NO_CLUSTERS, Clusters
-from .rig import Rig, TurningLoads, TurningSupports, turning_loads
+from .rig import Rig
 from .ties import NO_TIE_ROWS, TieRows, turned_tie_rows
+from .turning_loads import TurningLoads, turning_loads
+from .turning_supports import TurningSupports
 
 Kernel: TypeAlias = Callable[..., Any]
 
@@ -159,9 +161,9 @@ class BlockSystem:
     carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # search for contacts as bodies move; None at small displacements
     rig: Rig | None = None  # rig that drives the beam at finite displacements
-    turning: TurningLoads | None = None  # dead loads that rotate with bodies at finite displacements,
-    pushing: TurningLoads | None = None  # and live ones
-    leaning: TurningSupports | None = None  # supports that rotate at finite displacements
+    turning_dead: TurningLoads | None = None  # dead loads that rotate with bodies at finite displacements,
+    turning_live: TurningLoads | None = None  # and live ones
+    turning_supports: TurningSupports | None = None  # supports that rotate at finite displacements
     coupling: Coupling = NOT_COUPLED  # inertia that couples modes; only if nothing but a load acts on them
     inertia_scaling: float = 1.0  # largest factor by which the inertia of bodies is scaled up (`inertia`)
     clusters: Clusters = NO_CLUSTERS  # bodies with more inertia in relative motion; without live load on them
@@ -293,8 +295,8 @@ def moving_far(
         system,
         contacts=contacts,
         rig=rig,
-        turning=turning_loads(forces[0], points),
-        pushing=None if rig else turning_loads(forces[1], points),  # a rig rotates the load that drives it
-        leaning=TurningSupports.of(scene, system.rigid),
+        turning_dead=turning_loads(forces[0], points),
+        turning_live=None if rig else turning_loads(forces[1], points),  # a rig rotates the load that drives it
+        turning_supports=TurningSupports.of(scene, system.rigid),
         ties=turned_tie_rows(system.ties, scene.ties, points),
     )

@@ -8,6 +8,8 @@ from runningbond.joints import JointPoints
 from runningbond.scene import Array, Indices
 
 SAFETY = 0.9
+"""Fraction of the bound on the time step that is taken."""
+
 EXPONENTS = (0.0, 0.5, 1.0)
 """Exponents of the ratio in which two blocks share a joint (`joint_shares`): the lowest bound is taken."""
 

@@ -30,7 +30,6 @@ Coupled: TypeAlias = tuple[Unsigned, Array, Array, Array, Array, Array, Array, A
 """Coupled modes ``(n,)``; rows of their M⁻¹ [1/kg] and their own masses [kg], as long as a row; their accelerations of
 the step before, which steps write to, and six buffers."""
 
-
 Clustered: TypeAlias = tuple[Any, ...]
 """All but the last of `Clusters`, three motions of clusters ``(nc, 3)`` and 1 / (1 + β); masses of the modes [kg], zero
 where held, and three accelerations, ``(nd,)`` each: undamped, damped with their own masses, and damped in clusters."""

@@ -35,7 +35,6 @@ LEAST_BEAM = 0.2
 """Smallest height of the beam [m], if the actuator is too low to define one; without influence because the beam is
 stiff."""
 
-
 CRUSHING = ("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure")
 NO_CRUSHING: dict[str, Any] = {one.name: one.default for one in fields(JointMaterial) if one.name in CRUSHING}
 """Crushing parameters of a joint that does not crush."""

@@ -6,12 +6,10 @@ from .registry import (
     MODELS,
     TOLERANCE,
     check_parameters,
-    check_response,
     check_tolerance,
     find_model,
-    respond,
-    run_model,
 )
+from .run import check_response, respond, run_model
 
 __all__ = [
     "MODELS",

@@ -48,10 +48,10 @@ def check_goes_far(model: Model, scene: Scene, displacements: str, distance: flo
     """Refuse a wall that cannot be analysed at finite displacements, if these are requested, before anything is run."""
     if displacements == "small":
         return
-    from runningbond.dynamics.rig import check_finite, is_finite  # these need a compiler
+    from runningbond.dynamics.displacements import are_finite, check_finite  # these need a compiler
 
     try:
-        is_finite(displacements, model.name, scene, distance)
+        are_finite(displacements, model.name, scene, distance)
     except SceneError as error:
         raise SceneError(f"{flag}{error.key.split()[-1]}", error.remedy, error.value) from None
     check_finite(scene)

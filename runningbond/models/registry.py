@@ -4,30 +4,23 @@ A user's own model is another `Model`: add it to `MODELS`, or pass it to `run_mo
 """
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from functools import partial
 from importlib import import_module
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from runningbond.limit import elastic_displacement, limit, limit_nonassociated
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.own_packages import hidden_package, prefer_to_folders
 from runningbond.results import Outcome
-from runningbond.results.outcome import joined, two_digits
 from runningbond.scene import Scene, SceneError
-from runningbond.scene.history import FACTOR
-from runningbond.scene.mass_loads import Tilt
 from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
 from .second_opinion import REFINEMENT, asks_others, beside_others
-from .settings import check_observer, check_response_settings, check_settings
 
 if TYPE_CHECKING:
-    from runningbond.response import Response  # needs a compiler
+    pass  # needs a compiler
 
 DRY = frozenset({"block.density", "block.thickness", "joint.friction"})
 STRENGTH = DRY | {"joint.law", "joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
@@ -43,9 +36,7 @@ EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # features (`
 FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and of models that follow a load path
 KERNELS = 0.3  # seconds to load the compiled kernels of models that follow a load path
 TOLERANCE = 0.01  # default relative width of the bracket
-FAR_MOTION = 0.02  # limit of small motions, per smaller side of the wall: toppling resistance falls by this share
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model with load steps
-OF_RESPONSES = ("points", "after", "rows", "observe")  # settings of every response
 OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # for deformable blocks
 
 
@@ -186,177 +177,3 @@ def check_parameters(model: Model, parameters: Mapping[str, Any]) -> None:
         if name not in model.parameters:
             own = ", ".join(model.parameters) or "none"
             raise SceneError(f"model {model.name}: {name}", f"is not a parameter of it; it has {own}", value)
-
-
-def run_model(
-    model: str | Model,
-    scene: Scene,
-    tolerance: float = TOLERANCE,
-    observe: Callable[..., None] | None = None,
-    **parameters: Any,
-) -> Outcome:
-    """Run a model.
-
-    Parameters
-    ----------
-    model
-        A key of `MODELS`, or a model.
-    tolerance
-        Requested relative width of the bracket.
-    observe
-        Called with the states that the model passes through, if the model has an observer or reports progress.
-    parameters
-        Settings of the model, by their names.
-
-    Returns
-    -------
-    Outcome
-        The message ends with the keys of the scene that the model does not take into account. The status is ``failed``,
-        with the error message, if the model raised an error; an unknown model or parameter, or a model that does not
-        apply to the scene, raises a `SceneError`.
-    """
-    model = find_model(model)
-    check_tolerance(tolerance)
-    check_parameters(model, parameters)
-    if observe is not None:
-        check_observer("observe", observe)
-    model.check(scene)
-    if model.name in MODELS:  # also one that `going_far` has set to finite displacements
-        check_settings(model.name, scene, parameters)
-    if observe is not None and (model.observer or model.progress):
-        parameters["observe"] = observe
-    try:
-        outcome = model.solve(scene, tolerance, **parameters)
-    except SceneError:
-        raise
-    except Exception as error:  # a bug in the suite must not abort a campaign, nor end in a traceback
-        return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
-    if not isinstance(outcome, Outcome):
-        raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
-    finite = model.is_finite or parameters.get("displacements") == "finite"
-    notes = [
-        outcome.message,
-        "" if finite else _moves(model, scene, outcome, parameters.get("collapse")),
-        "" if finite else _led_far(model, scene, outcome),
-        _keeps_strength(model, scene),
-        _left_out(model, scene, finite),
-    ]
-    if outcome.multiplier is not None:
-        notes += [load.note(outcome.multiplier) for load in scene.load.live]
-        notes += [_tilted_with_the_ground(scene)]
-    return replace(outcome, model=model.name, message=joined(*notes))
-
-
-def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
-    """Note for a wall that has moved beyond small displacements at the largest load at which it is at rest.
-
-    Its joints may deform elastically by more than `collapse` [heights of a block], or they have opened, and the wall
-    hangs on soft ties.
-    """
-    if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.upper:
-        return ""
-    from dem.static import FALLEN
-
-    if "block.young" not in model.reads:
-        scene = scene.with_rigid_blocks()
-    gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
-    moved, load = outcome.curve.T
-    low, high = scene.blocks.extent(scene.wall)
-    rests = np.abs(moved[load == outcome.lower]) / (high - low).min()
-    moved = rests[0] if len(rests) else 0.0
-    height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
-    soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"
-    far = f"at the largest load at rest the wall has moved by {side} its smaller side, beyond small displacements"
-    return joined(soft if gives > (FALLEN if collapse is None else collapse) else "", far if moved > FAR_MOTION else "")
-
-
-def _led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
-    """Note for a wall with prescribed displacements of its support or beam that are not small."""
-    if model.kind != "history" or model.is_finite or not scene.is_led or not len(outcome.curve):
-        return ""
-    low, high = scene.blocks.extent(scene.wall)
-    share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())
-    led = f"{'the support' if scene.settlement else 'the beam'} goes by {two_digits(100 * share)} %"
-    follows = "; finite ones follow it" if "displacements" in model.parameters and _may_go_far(scene) else ""
-    return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR_MOTION else ""
-
-
-def _may_go_far(scene: Scene) -> bool:
-    """Whether a wall with prescribed displacements can be analysed at finite displacements."""
-    from runningbond.dynamics.rig import check_finite
-
-    try:
-        check_finite(scene)
-    except SceneError:
-        return False
-    return True
-
-
-def _tilted_with_the_ground(scene: Scene) -> str:
-    """Note for dead loads other than weights, if the ground tilts."""
-    tilts = any(isinstance(load, Tilt) for load in scene.load.live)
-    if not tilts or not len(scene.dead_forces.force):
-        return ""
-    return "dead loads at points and along lines turn with the ground, as jacks do and weights do not"
-
-
-def _keeps_strength(model: Model, scene: Scene) -> str:
-    """Note for joints that lose strength, if the model does not include this; else empty."""
-    joints = scene.materials_of_joints
-    loses = {
-        "joint.fracture_energy_1": any(each.softens for each in joints),
-        "joint.compressive_fracture_energy": any(each.compressive_fracture_energy is not None for each in joints),
-    }
-    kept = any(lost and key not in model.reads for key, lost in loses.items())
-    return "joints are taken to keep the strength that they lose as they break: the wall may bear less" if kept else ""
-
-
-def _left_out(model: Model, scene: Scene, finite: bool = False) -> str:
-    """Note on the keys of a scene that a model does not take into account; empty if it reads all."""
-    unread = model.unread(scene, finite=finite)
-    return f"not taken into account: {', '.join(unread)}" if unread else ""
-
-
-def check_response(
-    model: str | Model, scene: Scene, scale: float, model_key: str = "model", scale_key: str = "scale"
-) -> "Callable[..., Response]":
-    """Check that a model can compute the response of a scene to its ground motion; return its `Model.respond`.
-
-    Raises
-    ------
-    SceneError
-        For a model without response to ground motion, a scene without ground motion, or a scale that is zero or no
-        number.
-    """
-    model = find_model(model, model_key)
-    if model.respond is None:
-        able = ", ".join(name for name, each in MODELS.items() if each.respond)
-        raise SceneError(model_key, f"follows no motion of the ground; take {able}", model.name)
-    if scene.history is None:
-        raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
-    model.check(scene)
-    if not FACTOR.take(scale_key, scale):
-        raise SceneError(scale_key, "must not be zero", scale)
-    return model.respond
-
-
-def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings: Any) -> "Response":
-    """Compute the response of a scene to its ground motion times `scale`; settings as for `response.follow`.
-
-    The response's message ends with the keys of the scene that the model does not take into account.
-
-    Raises
-    ------
-    SceneError
-        As in `check_response`, and for unknown settings.
-    """
-    follow = check_response(model, scene, scale)
-    own = (*OF_RESPONSES, "cells", "modes") if find_model(model).name == "fem" else OF_RESPONSES
-    check_response_settings(settings, own)
-    from runningbond.dynamics import beam_note
-    from runningbond.joints import impact_note
-
-    response = follow(scene, scale, **settings)
-    impacts = impact_note(scene) if len(response.time) else ""
-    notes = impacts, beam_note(scene), _left_out(find_model(model), scene)
-    return replace(response, message=joined(response.message, *notes))

@@ -124,7 +124,7 @@ class MotionRecorder(SeriesRecorder):
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Write a state at rest or on a prescribed path; otherwise keep it temporarily as part of a possible fall."""
         self._turn_to(run.system.source)
-        if run.led:
+        if run.is_driven:
             if state.steps < self._led:  # first state of a path, at rest under dead load; each slower path restarts
                 self._series.clear()
             self._led = state.steps
@@ -134,7 +134,7 @@ class MotionRecorder(SeriesRecorder):
             self._moments, self._stride = [], 1
         self._held = state
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
-        if run.led or self._calm == CALM:
+        if run.is_driven or self._calm == CALM:
             self.keep(self._frame(run, state, multiplier))
             self._moments = []
         elif not self._moments or state.steps >= self._moments[-1][0] + self._stride:

@@ -102,7 +102,7 @@ def critical_scale(
         _bracket(search, START * unit, LARGEST_SCALE * unit, tolerance)
     except KeyboardInterrupt:
         stopped = True
-    outcome = _judged(outcome, rest, search, tolerance, stopped)
+    outcome = _judged(outcome, rest, search, stopped)
     seconds = time.perf_counter() - start
     if outcome.upper is not None and observe is not no_observer and not stopped:
         with suppress(KeyboardInterrupt):
@@ -133,7 +133,7 @@ def _bracket(search: ScaleSearch, first: float, most: float, tolerance: float) -
         lower, upper = (lower, middle) if search.falls(middle) else (middle, upper)
 
 
-def _judged(outcome: Outcome, rest: Resting, search: ScaleSearch, tolerance: float, stopped: bool) -> Outcome:
+def _judged(outcome: Outcome, rest: Resting, search: ScaleSearch, stopped: bool) -> Outcome:
     runs = search.in_order
     first = next((k for k, run in enumerate(runs) if run.verdict == "collapse"), len(runs))
     upper = runs[first] if first < len(runs) else None

@@ -263,7 +263,7 @@ def _followed(
 ) -> Response:
     begin, history = time.perf_counter(), rest.history
     run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=part)
-    run.led, state = True, rest.state.copy()
+    run.is_driven, state = True, rest.state.copy()
     ground = Ground(run, history, scale, state.time)
     log = _Log(rest, ground, state, points)
     verdict: ResponseVerdict = "undecided"

@@ -5,6 +5,7 @@ from .arrays import Array, Indices, Mask, Unsigned, frozen
 from .beam import Beam, BeamLoad, Drive
 from .blocks import Blocks
 from .bond import Bond
+from .build import build_scene
 from .complement import complement
 from .errors import SceneError
 from .file import read_description, read_scene, scene_from_dict
@@ -12,13 +13,13 @@ from .forces import Arrow, Forces
 from .history import History
 from .loads import Load
 from .mass_loads import Body, Lateral, Tilt
-from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Stiffness
+from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Stiffness, table_of
 from .point_loads import GivenForces, LineLoad, Moment, PointLoad
+from .scene import Scene, check_scene
 from .segments import Joints, find_joints
 from .settlement import Settlement
 from .supports import NO_PINS, Pins, free_motions
 from .ties import ANCHOR, NO_TIES, Tie, Ties
-from .wall import Scene, build_scene, check_scene, table_of
 
 __all__ = [
     "ANCHOR",

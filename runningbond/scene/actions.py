@@ -11,7 +11,7 @@ from .ranges import vector
 from .table import Table
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 LEAST_COMPONENT = 1e-6
 """Smallest nonzero component of a vector, relative to the other: a smaller one is lost in a solver's tolerance."""

@@ -17,7 +17,7 @@ from .supports import NO_PINS, Pins
 from .table import Table
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 Condition: TypeAlias = Literal["free", "level", "fixed-height"]
 CONDITIONS: tuple[str, ...] = get_args(Condition)

@@ -8,15 +8,16 @@ from typing import Any, cast, get_args
 
 from .assignment import ANY, BEAM, GROUND, read_assignments
 from .beam import read_beam
+from .build import build_scene
 from .errors import SceneError, keys_of
 from .loads import read_load
 from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Softening, Stiffness, check_friction
 from .outlines import read_outlines
 from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range, path_of
+from .scene import Scene
 from .supports import SUPPORT_KINDS, SupportKind
 from .table import Table
 from .ties import read_tie
-from .wall import Scene, build_scene
 
 RESERVED = ("block", "joint", "inner_joint", ANY, BEAM, GROUND)
 """Names that are not allowed for materials of ``[materials]`` and ``[joints]``."""

@@ -10,7 +10,7 @@ from .arrays import Array, Indices, frozen
 from .errors import SceneError
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from .records import read_record
 from .table import Table
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 KEY = "load.history"
 

@@ -12,7 +12,7 @@ from .forces import Forces
 from .table import Table
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 SIDES = {"right": (1.0, 0.0), "left": (-1.0, 0.0)}
 PERPENDICULAR_COSINE = 1e-6

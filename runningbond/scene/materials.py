@@ -237,3 +237,10 @@ def check_friction(key: str, friction: float, value: float) -> None:
     if 0.0 < friction < LEAST_FRICTION:
         what = f"must be 0, for joints without friction, or such that tan φ ≥ {LEAST_FRICTION:g}"
         raise SceneError(key, what, value)
+
+
+def table_of(material: BlockMaterial | JointMaterial) -> str:
+    """Name of the scene file's table that describes a material."""
+    if material.name in ("block", "joint", "inner_joint"):
+        return material.name
+    return f"{'materials' if isinstance(material, BlockMaterial) else 'joints'}.{material.name}"

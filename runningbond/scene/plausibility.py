@@ -14,9 +14,9 @@ import shapely
 
 from .arrays import Array, Mask
 from .blocks import touching_boxes
-from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
+from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness, table_of
+from .scene import Scene
 from .ties import ANCHOR
-from .wall import Scene, table_of
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from .ranges import Range, vector
 from .table import Table
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 NO_CUTS = np.zeros(0)
 """No further cuts, as shares of a line."""

@@ -18,7 +18,7 @@ from .ranges import Range, vector
 from .table import Table
 
 if TYPE_CHECKING:
-    from .wall import Scene
+    from .scene import Scene
 
 LARGEST_ANGLE = 10.0
 """Largest rotation of a support, at λ = 1 and along a path [degrees]: up to it rotations count as small."""

@@ -98,7 +98,7 @@ def test_energy_balances_for_a_wall_of_splitting_blocks() -> None:
     scene, lost = scene_of(wall, LADDER["rigid-splitting"].features), list[float]()
 
     def observe(run: Run, state: State, multiplier: float) -> None:
-        if run.led:
+        if run.is_driven:
             lost.append(run.unaccounted(state))
             assert PLASTIC_CLOSURE in run.interface.law.law.history
 

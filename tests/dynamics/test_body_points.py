@@ -14,8 +14,8 @@ from fem_interface.finite_system import finite_system as deformable_system
 from fem_interface.model import fem
 from fem_interface.node_outline import node_outline
 from runningbond.dynamics import BlockSystem
-from runningbond.dynamics.rig import turn_live, turn_loads
 from runningbond.dynamics.ties import TieRows, pull
+from runningbond.dynamics.turning_loads import turn_live, turn_loads
 from runningbond.scene import Array, Scene
 from tests.dynamics.test_led import block
 
@@ -70,7 +70,7 @@ def test_generalized_dead_forces_are_gradient_of_their_work(blocks: Blocks, seed
     loads = [{"kind": "point", "at": p.tolist(), "force": f.tolist()} for p, f in zip(at, forces, strict=True)]
     scene = block(load__dead=loads)
     system, weight = blocks(scene), 9.81 * scene.mass[0]
-    motion, force, turning = turned(system, seed), system.dead.copy(), system.turning
+    motion, force, turning = turned(system, seed), system.dead.copy(), system.turning_dead
     assert turning is not None
     turn_loads((turning.points.arrays, *turning[1:]), motion, force)
     np.testing.assert_allclose(turning.points.places(np.zeros_like(motion)), at, rtol=1e-12)
@@ -170,7 +170,7 @@ def test_generalized_live_forces_are_gradient_of_their_work(blocks: Blocks, seed
     loads = [{"kind": "point", "at": p.tolist(), "force": f.tolist()} for p, f in zip(at, forces, strict=True)]
     loads.append({"kind": "moment", "at": [0.12, 0.03], "moment": 20.0})
     system = blocks(block(load__live=loads))
-    live, pushing = system.live.copy(), system.pushing
+    live, pushing = system.live.copy(), system.turning_live
     assert pushing is not None
     for motion in (turned(system, seed + 10), turned(system, seed)):
         turn_live((pushing.points.arrays, *pushing[1:]), motion, live)

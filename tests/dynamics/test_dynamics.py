@@ -20,10 +20,8 @@ from runningbond.dynamics import (
     Run,
     State,
     block_frequency_squared,
-    drive,
     mass_factor,
     settle,
-    settled_drive,
     stable_step,
 )
 from runningbond.dynamics.collapse import CollapseDetector
@@ -34,6 +32,7 @@ from runningbond.joints.wall_law import kernel_law
 from runningbond.limit import limit
 from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal, pin_operator
 from runningbond.scene import Array, JointMaterial, Mortar, Scene, Stiffness
+from runningbond.studies.pushover import drive, settled_drive
 from tests.limit.test_limit import pile, rectangle
 from tests.walls import panel
 

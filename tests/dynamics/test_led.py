@@ -609,7 +609,7 @@ def test_interrupt_keeps_curve_so_far(after: int, rows: int) -> None:
     seen: list[float] = []
 
     def stop(run: Run, state: State, multiplier: float) -> None:
-        seen.extend([multiplier] if run.led else [])
+        seen.extend([multiplier] if run.is_driven else [])
         if len(seen) == after:
             raise KeyboardInterrupt
 

@@ -16,8 +16,7 @@ from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
 from runningbond.dynamics import U_CRIT, Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps, settle
 from runningbond.dynamics.collapse import Verdict
-from runningbond.dynamics.controls import ramp
-from runningbond.dynamics.growth import FASTER, LOOKS, Growth
+from runningbond.dynamics.growth import FASTER, LOOKS, Growth, ramp
 from runningbond.dynamics.load_stepping import RESOLVED, smallest_width
 from runningbond.limit import limit
 from runningbond.scene import Array, Scene, read_scene

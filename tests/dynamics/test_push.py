@@ -153,7 +153,7 @@ def test_interrupt_keeps_last_complete_push() -> None:
     pushes: list[float] = []
 
     def stop(run: Run, state: State, multiplier: float) -> None:
-        pushes.extend([multiplier] if run.led and multiplier == 0 else [])
+        pushes.extend([multiplier] if run.is_driven and multiplier == 0 else [])
         if len(pushes) == 2:
             raise KeyboardInterrupt
 

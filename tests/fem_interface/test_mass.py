@@ -20,7 +20,7 @@ from fem_interface.modes import ModeCount
 from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
-from runningbond.dynamics.controls import ramp
+from runningbond.dynamics.growth import ramp
 from runningbond.dynamics.vibrations import elastic_stiffness
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError

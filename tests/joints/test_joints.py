@@ -117,7 +117,7 @@ def test_work_of_admissible_forces_does_not_exceed_dissipation(
 
 @pytest.mark.parametrize(("parts", "within"), [(1, 0.03), (2, 0.05), (3, 0.05), (4, 0.055)])
 def test_error_of_crushed_points_in_bending_is_as_reported(parts: int, within: float) -> None:
-    """Crushed over a share s from one end, against s (1 - s) / 2 for a continuous joint (`Run.crushing_note`)."""
+    """Crushed over a share s from one end, against s (1 - s) / 2 for a continuous joint (`crushing_note`)."""
     rule = wall_rule(panel(joint__compressive_strength=1e7), parts)
     at = np.concatenate([(k + (1 + np.asarray(rule.nodes)) / 2) / parts for k in range(parts)])
     order = np.argsort(at, kind="stable")

@@ -5,13 +5,14 @@ import pytest
 
 from dem.dynamic import quasi_static_run
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import Criteria, State, drive, load_steps, settle
+from runningbond.dynamics import Criteria, State, load_steps, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING
 from runningbond.dynamics.run import LOCAL
 from runningbond.limit import limit_nonassociated
 from runningbond.scene import Array
+from runningbond.studies.pushover import drive
 from runningbond.studies.stability.loading_rate import BRACKET, at_no_speed, excess, order, push_row, ramp_row, step_row
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 

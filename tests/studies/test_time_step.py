@@ -11,11 +11,12 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
 from fem_interface.system import system_of
 from runningbond.compare import published_scene
-from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
+from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, settle
 from runningbond.dynamics.central_differences import LOOK
 from runningbond.dynamics.vibrations import elastic_stiffness, vibrations
 from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Scene
+from runningbond.studies.pushover import drive
 from runningbond.studies.stability.time_step import (
     GROWTH,
     LOCAL,

@@ -14,9 +14,10 @@ from fem_interface.modes import ModeCount
 from fem_interface.periodic_cell import deformable_cell, rigid_cell
 from fem_interface.system import system_of
 from homog import rigid_moduli
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Pushover, Run, State, drive, settle
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
 from runningbond.models import MODELS, TOLERANCE
 from runningbond.scene import Scene, SceneError, Stiffness
+from runningbond.studies.pushover import Pushover, drive
 
 from .walls import TURNED, Question
 

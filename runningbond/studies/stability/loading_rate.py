@@ -19,13 +19,14 @@ from matplotlib.figure import Figure
 
 from dem.dynamic import quasi_static_run
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import U_CRIT, Criteria, Run, drive, load_steps, settle, settled_drive
+from runningbond.dynamics import U_CRIT, Criteria, Run, load_steps, settle
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING, LOADING_WEIGHTLESS
 from runningbond.dynamics.run import LOCAL
 from runningbond.pictures.charts import LOOKS, floor, level, looks_of, series
 from runningbond.scene import Array
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies.pushover import drive, settled_drive
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_scene, known_wall
 
 WALLS = (SLIDING, TOPPLING, W1)

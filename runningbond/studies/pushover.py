@@ -1,18 +1,14 @@
-"""Load controls: a ramp, and work-conjugate displacement control; steps of constant load are in `load_stepping`."""
+"""Work-conjugate displacement control of a wall, as studies compare it with load steps."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from runningbond.dynamics import Run, State
 from runningbond.scene import Array
 
-from .run import Run
-from .state import State
-
-
-def ramp(run: Run, state: State, start: float, stop: float, steps: int) -> None:
-    """Raise the multiplier evenly from `start` to `stop` over a number of steps, in place."""
-    run.hold(state, start, steps, rise=(stop - start) / steps, given=run.given(state))
+PIECES = 200
+"""Largest number of intervals of a push."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,16 +23,16 @@ class Pushover:
     state: State  # the wall at the end
 
 
-def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Pushover:
+def drive(run: Run, start: State, distance: float, steps: int) -> Pushover:
     """Push a wall until its control point has moved a distance [m], starting from a copy of a state.
 
     The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the multiplier
     follows. The push takes `steps` if everything moves as far as the control point, and usually fewer; the curve has
-    one point for each of at most `pieces` intervals, which are at least one step long.
+    one point for each of at most `PIECES` intervals, which are at least one step long.
     """
     system, state = run.system, start.copy()
     power = float(distance * np.abs(system.live).sum()) / (steps * run.dt)
-    pieces = min(pieces, steps)
+    pieces = min(PIECES, steps)
     soft = max(1, pieces // 20)
     rows: list[tuple[float, float]] = []
     given = run.given(state)

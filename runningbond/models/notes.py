@@ -1,0 +1,84 @@
+"""Notes on what an outcome does not take into account, and on motions that are not small."""
+
+import numpy as np
+
+from runningbond.limit import elastic_displacement
+from runningbond.results import Outcome
+from runningbond.results.outcome import joined, two_digits
+from runningbond.scene import Scene, SceneError
+from runningbond.scene.mass_loads import Tilt
+
+from .model import Model
+
+FAR_MOTION = 0.02
+"""Limit of small motions, per smaller side of the wall: toppling resistance falls by this share."""
+
+
+def moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
+    """Note for a wall that has moved beyond small displacements at the largest load at which it is at rest.
+
+    Its joints may deform elastically by more than `collapse` [heights of a block], or they have opened, and the wall
+    hangs on soft ties.
+    """
+    if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.upper:
+        return ""
+    from dem.static import FALLEN
+
+    if "block.young" not in model.reads:
+        scene = scene.with_rigid_blocks()
+    gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
+    moved, load = outcome.curve.T
+    low, high = scene.blocks.extent(scene.wall)
+    rests = np.abs(moved[load == outcome.lower]) / (high - low).min()
+    moved = rests[0] if len(rests) else 0.0
+    height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
+    soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"
+    far = f"at the largest load at rest the wall has moved by {side} its smaller side, beyond small displacements"
+    return joined(soft if gives > (FALLEN if collapse is None else collapse) else "", far if moved > FAR_MOTION else "")
+
+
+def led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
+    """Note for a wall with prescribed displacements of its support or beam that are not small."""
+    if model.kind != "history" or model.is_finite or not scene.is_led or not len(outcome.curve):
+        return ""
+    low, high = scene.blocks.extent(scene.wall)
+    share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())
+    led = f"{'the support' if scene.settlement else 'the beam'} goes by {two_digits(100 * share)} %"
+    follows = "; finite ones follow it" if "displacements" in model.parameters and _may_go_far(scene) else ""
+    return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR_MOTION else ""
+
+
+def _may_go_far(scene: Scene) -> bool:
+    """Whether a wall with prescribed displacements can be analysed at finite displacements."""
+    from runningbond.dynamics.displacements import check_finite
+
+    try:
+        check_finite(scene)
+    except SceneError:
+        return False
+    return True
+
+
+def tilted_with_the_ground(scene: Scene) -> str:
+    """Note for dead loads other than weights, if the ground tilts."""
+    tilts = any(isinstance(load, Tilt) for load in scene.load.live)
+    if not tilts or not len(scene.dead_forces.force):
+        return ""
+    return "dead loads at points and along lines turn with the ground, as jacks do and weights do not"
+
+
+def keeps_strength(model: Model, scene: Scene) -> str:
+    """Note for joints that lose strength, if the model does not include this; else empty."""
+    joints = scene.materials_of_joints
+    loses = {
+        "joint.fracture_energy_1": any(each.softens for each in joints),
+        "joint.compressive_fracture_energy": any(each.compressive_fracture_energy is not None for each in joints),
+    }
+    kept = any(lost and key not in model.reads for key, lost in loses.items())
+    return "joints are taken to keep the strength that they lose as they break: the wall may bear less" if kept else ""
+
+
+def left_out(model: Model, scene: Scene, finite: bool = False) -> str:
+    """Note on the keys of a scene that a model does not take into account; empty if it reads all."""
+    unread = model.unread(scene, finite=finite)
+    return f"not taken into account: {', '.join(unread)}" if unread else ""
