@@ -9,7 +9,7 @@ from runningbond.dynamics.path_curve import BEAM_ANSWER, growth_left, other_way
 from runningbond.scene import Array
 
 from .lead import StaticLead
-from .pushover import NOISE, StaticState
+from .load_path import NOISE, StaticState
 from .static_system import Control, dot
 
 REGULARISATION = 1e-6

@@ -11,7 +11,7 @@ import numpy as np
 from runningbond.dynamics.collapse_load import BEYOND_BOUND, LARGEST_LOAD
 from runningbond.limit import proved_bound
 
-from .pushover import NOISE, LoadPath, StaticState, lengthened
+from .load_path import NOISE, LoadPath, StaticState, lengthened
 
 MAX_UNDECIDED_LOADS = 3
 """Number of loads that may stay undecided; after one more, the bracket around them is left as wide as it is."""

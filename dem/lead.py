@@ -10,7 +10,7 @@ import numpy as np
 from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Scene
 
-from .pushover import StaticState
+from .load_path import StaticState
 from .static_system import Control, StaticSystem
 
 MIN_STEPS = 25

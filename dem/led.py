@@ -26,12 +26,12 @@ from runningbond.results.reactions import COME_FREE
 from .beam_drive import StaticBeamDrive
 from .climb import BUDGET_SPENT, NO_VERDICT
 from .lead import StaticLead
-from .pushover import LoadPath, StaticState, state_of
+from .load_path import LoadPath, StaticState, state_of
 from .relaxation import Rest
 from .support_settlement import StaticSettlement
 
-MAX_RUNS = 4
-"""Number of runs, each in steps half as long as in the run before, after which a path is left undecided."""
+MAX_TRAVERSES = 4
+"""Number of traverses, each in steps half as long as in the traverse before, after which a path is left undecided."""
 
 BISECTIONS = 20
 """Number of bisections of the step from the last equilibrium to the fall of a wall."""
@@ -51,7 +51,7 @@ class StaticTraverse:
         return self.stopped is not None and self.stopped.verdict == "fall"
 
 
-def _run(path: LoadPath, lead: StaticLead, share: float) -> StaticTraverse:
+def _traverse(path: LoadPath, lead: StaticLead, share: float) -> StaticTraverse:
     states = [path.rests[0]]
     for value, turns in lead.stops(share):
         result = _hold(path, lead, states, value, turns)
@@ -74,9 +74,9 @@ def _hold(path: LoadPath, lead: StaticLead, states: list[StaticState], value: fl
     return path.hold(lead.elastically(now, value), now.plastic_slip, lead.control(value))
 
 
-def _closer(path: LoadPath, lead: StaticLead, run: StaticTraverse, turns: bool) -> StaticTraverse:
-    """Add states between the last equilibrium and the fall to a run that ended in a fall."""
-    states, fall, aim = [*run.states], run.stopped, run.aim
+def _closer(path: LoadPath, lead: StaticLead, traverse: StaticTraverse, turns: bool) -> StaticTraverse:
+    """Add states between the last equilibrium and the fall to a traverse that ended in a fall."""
+    states, fall, aim = [*traverse.states], traverse.stopped, traverse.aim
     for _ in range(BISECTIONS):
         value = (lead.value(states[-1]) + aim) / 2
         result = _hold(path, lead, states, value, turns)
@@ -98,7 +98,7 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     outcome
         Outcome so far.
     path
-        Load path that starts with that state of rest; the last run is added to it, and observed.
+        Load path that starts with that state of rest; the last traverse is added to it, and observed.
     tolerance
         Relative width of the bracket.
     first_step
@@ -106,27 +106,27 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     """
     kind = StaticBeamDrive if path.system.support_jump is None else StaticSettlement
     lead: StaticLead = kind(path.system, path.rests[0], first_step)
-    runs: list[StaticTraverse] = []
+    traverses: list[StaticTraverse] = []
     answers: list[float] = []
-    for k in range(MAX_RUNS):
+    for k in range(MAX_TRAVERSES):
         path.past = []
         try:
-            run = _run(path, lead, 0.5**k)
+            traverse = _traverse(path, lead, 0.5**k)
         except KeyboardInterrupt:
             so_far = StaticTraverse([path.rests[0], *path.past])
             return replace(_arrays(outcome, lead, so_far), message="no answer: interrupted, this is the path so far")
-        if runs and run.stopped and not run.fell:
+        if traverses and traverse.stopped and not traverse.fell:
             break
-        runs.append(run)
-        forces = [lead.force(state) for state in run.states]
+        traverses.append(traverse)
+        forces = [lead.force(state) for state in traverse.states]
         answers.append(forces[lead.answering(np.array(forces))])
-        if (run.stopped and not run.fell) or (k > 0 and _spread(lead, answers[-2:]) <= tolerance):
+        if (traverse.stopped and not traverse.fell) or (k > 0 and _spread(lead, answers[-2:]) <= tolerance):
             break
-    path.past = runs[-1].states[1:]
+    path.past = traverses[-1].states[1:]
     for state in path.past:
         path.observe(path, state)
-    cut = f"at {_at(lead, run)} {BUDGET_SPENT if path.budget <= 0 else NO_VERDICT}"
-    return _judge(_arrays(outcome, lead, runs[-1]), lead, runs, answers, tolerance, cut)
+    cut = f"at {_at(lead, traverse)} {BUDGET_SPENT if path.budget <= 0 else NO_VERDICT}"
+    return _judge(_arrays(outcome, lead, traverses[-1]), lead, traverses, answers, tolerance, cut)
 
 
 def _spread(lead: StaticLead, answers: list[float]) -> float:
@@ -134,12 +134,12 @@ def _spread(lead: StaticLead, answers: list[float]) -> float:
     return (max(answers) - min(answers)) / max(*map(abs, answers), lead.least)
 
 
-def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
+def _arrays(outcome: Outcome, lead: StaticLead, traverse: StaticTraverse) -> Outcome:
     """Add curve, forces at the answer, and motion: of the fall, the settlement, or the drive's farthest step."""
-    system, states = lead.system, run.states
+    system, states = lead.system, traverse.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
-    if run.fell and run.stopped is not None:
-        moving = system.motion(np.append(run.stopped.last, np.zeros(system.unknowns - system.freedoms)))
+    if traverse.fell and traverse.stopped is not None:
+        moving = system.motion(np.append(traverse.stopped.last, np.zeros(system.unknowns - system.freedoms)))
     else:
         before, after = lead.moving(value)
         moving = system.motion(states[after].x) - system.motion(states[before].x)
@@ -157,29 +157,35 @@ def _arrays(outcome: Outcome, lead: StaticLead, run: StaticTraverse) -> Outcome:
     )
 
 
-def _at(lead: StaticLead, run: StaticTraverse) -> str:
-    """Last prescribed displacement of a run as text."""
-    return f"{lead.metre * abs(run.aim):.4g} m"
+def _at(lead: StaticLead, traverse: StaticTraverse) -> str:
+    """Last prescribed displacement of a traverse as text."""
+    return f"{lead.metre * abs(traverse.aim):.4g} m"
 
 
 def _judge(
-    outcome: Outcome, lead: StaticLead, runs: list[StaticTraverse], answers: list[float], tolerance: float, cut: str
+    outcome: Outcome,
+    lead: StaticLead,
+    traverses: list[StaticTraverse],
+    answers: list[float],
+    tolerance: float,
+    cut: str,
 ) -> Outcome:
-    """Outcome with the verdict on the runs and its message; `cut` is where and why the last run was given up."""
-    run, (lower, upper), at = runs[-1], (min(answers[-2:]), max(answers[-2:])), _at(lead, runs[-1])
-    steps = f"in {len(run.states) - 1} steps" + (f" and in {len(runs[-2].states) - 1}" if len(runs) > 1 else "")
-    what = joined(f"{lead.answer}, {steps}", "small displacements", lead.other_way(outcome.curve))
+    """Outcome with its verdict and message; `cut` is where and why the last traverse was given up."""
+    traverse, (lower, upper), at = traverses[-1], (min(answers[-2:]), max(answers[-2:])), _at(lead, traverses[-1])
+    steps, *before = (len(each.states) - 1 for each in traverses[-1:-3:-1])
+    taken = f"in {steps} steps" + "".join(f" and in {fewer}" for fewer in before)
+    what = joined(f"{lead.answer}, {taken}", "small displacements", lead.other_way(outcome.curve))
     unfinished, falls = lead.unfinished(outcome.curve)
     so_far = replace(outcome, lower=None if falls else lower, upper=upper if falls else None)
-    if run.stopped and not run.fell:
+    if traverse.stopped and not traverse.fell:
         return replace(so_far, message=f"no answer: {cut}; {what}")
-    if not run.fell and lead.has_come_free(run.states[-1]):
+    if not traverse.fell and lead.has_come_free(traverse.states[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     room = tolerance - _spread(lead, [lower, upper])
     room = (room if room > 0 else tolerance) * max(upper, lead.least)
-    if not run.fell:
+    if not traverse.fell:
         upper += lead.growth_left(outcome.curve)
-    if not run.fell and not lead.has_formed(outcome.curve, tolerance=tolerance, room=room):
+    if not traverse.fell and not lead.has_formed(outcome.curve, tolerance=tolerance, room=room):
         reached = f"{number(answers[-1])} at {lead.reached(outcome.curve):.4g} m"
         if lead.may_lock and is_self_locking(lead.scene):
             message = f"self-locking: the drive takes {reached}, and joint forces balance any multiple of it; {what}"
@@ -191,5 +197,5 @@ def _judge(
     outcome = replace(outcome, lower=lower, upper=upper)
     if _spread(lead, answers[-2:]) > tolerance:
         return replace(outcome, message=f"no answer: other steps change it by more than the tolerance; {what}")
-    fall = f"the wall falls at {at}, and the answer is that of its last rest" if run.fell else ""
+    fall = f"the wall falls at {at}, and the answer is that of its last rest" if traverse.fell else ""
     return replace(outcome, status="collapse", multiplier=answers[-1], message=joined(what, fall))

@@ -32,7 +32,7 @@ from runningbond.scene import Scene, check_scene
 
 from .climb import BUDGET_SPENT, INTERRUPTED, NO_VERDICT, climb, ends, look_closer, peak
 from .led import lead_along
-from .pushover import LoadPath, StaticObserver, no_observer, state_of
+from .load_path import LoadPath, StaticObserver, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system, with_late_pins
 

@@ -12,7 +12,7 @@ from runningbond.results import Supports
 from runningbond.scene import Array
 
 from .lead import StaticLead
-from .pushover import StaticState
+from .load_path import StaticState
 from .static_system import Control
 
 

@@ -30,6 +30,10 @@ from .mass_scaling import ScaledModes, scaled_modes
 from .node_outline import NodeOutline
 from .system import DAMPING, block_system
 
+HALFWAY = 0.5 + 1e-6
+"""Part of the distance to the next point by which a point must be inside the corners' arcs to carry load: one half,
+plus a margin for rounding."""
+
 
 def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSystem:
     """Set up a wall's deformable blocks at finite displacements; `mass_scaling` as in `fem_interface.model.fem`."""
@@ -37,11 +41,6 @@ def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSys
     interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
     system, forces = block_system(blocks.wall, scaled, interface), blocks.wall.forces_by_piece
     return moving_far(system, blocks.scene, contacts, forces, blocks.wall.deformation)
-
-
-HALF = 0.5 + 1e-6
-"""Part of the distance to the next point by which a point must be inside the corners' arcs to carry load: one half,
-plus a margin for rounding."""
 
 
 class DeformableContacts:
@@ -72,7 +71,7 @@ class DeformableContacts:
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
         # An end represents its side up to half a spacing before the first point far enough inside to carry load.
         length = self.blocks.nodes.length[facet] / self.blocks.parts
-        passed = np.floor(np.maximum(self.blocks.sides.inset[corner], 0.0) / length + HALF)
+        passed = np.floor(np.maximum(self.blocks.sides.inset[corner], 0.0) / length + HALFWAY)
         area = np.minimum(ends.area, self.outline.thickness_between(e, f) * (passed + 0.5) * length)
         inner = self._inner(rigid, margin)
         contacts = Contacts(
@@ -147,13 +146,13 @@ class DeformableContacts:
 
     @cached_property
     def _bearing(self) -> Mask:
-        """Which points are half-way to the next one (`HALF`) inside the arcs of their own side's corners, ``(ns,)``."""
+        """Which points are half-way to the next one (`HALFWAY`) inside the arcs of their own side's corners, ``(ns,)``."""
         (facet, share, half), nodes, sides = self.blocks.points, self.blocks.nodes, self.blocks.sides
         side = np.repeat(np.arange(len(sides.extent)), np.diff(self.blocks.first))[facet]
         near_end, far_end = (sides.inset[sides.ends[side, end]] for end in (0, 1))
         along = nodes.begin[facet] + share * nodes.length[facet]
         inside = np.minimum(along - near_end, sides.extent[side] - far_end - along)
-        return np.asarray(inside > 2 * HALF * half)
+        return np.asarray(inside > 2 * HALFWAY * half)
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with new buffers."""

@@ -199,7 +199,7 @@ def _bound(kind: _Kind, square: float, damping: float, viscous: float, fit: floa
 
 def _kinds(wall: ModalWall, exponent: float, of_joints: float) -> list[_Kind]:
     """Blocks that differ in mesh, pins or joints; joints are shared with an exponent (`joint_shares`)."""
-    joint = wall.elements
+    joint, tangent = wall.elements, wall.elements.tangent
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
     inertia = wall.scene.inertial_mass
@@ -230,7 +230,7 @@ def _kinds(wall: ModalWall, exponent: float, of_joints: float) -> list[_Kind]:
             for side in sides:
                 e = side % ne
                 at_points = np.einsum("pe,exm->pxm", joint.weights[:, e], shape[nodes[side]])
-                frame = np.array([joint.normal[e], [-joint.normal[e, 1], joint.normal[e, 0]]])
+                frame = np.array([joint.normal[e], tangent[e]])
                 jumps = np.einsum("dx,pxm->dpm", frame, at_points)
                 matrix += part[side] * np.einsum("dp,dpm,dpk->mk", springs[:, :, e], jumps, jumps)
         stiffness = modes.stiffness[moving]

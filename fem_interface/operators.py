@@ -130,6 +130,11 @@ class JointElements:
         along = (self.points.position * self.points.tangent).sum(axis=1)
         return np.lexsort((along, np.tile(self.element, len(self.weights))))
 
+    @property
+    def tangent(self) -> Array:
+        """Unit tangent of each element, at a quarter turn from the normal, ``(ne, 2)``."""
+        return np.column_stack([-self.normal[:, 1], self.normal[:, 0]])
+
     def sides(self, displacement: Array) -> Array:
         """Displacements of the points on sides a and b, ``(2, np, 2)`` [m], from those of the nodes ``(nn, 2)``."""
         ends = displacement[self.nodes].reshape(-1, 2, 2, 2)  # element, side, end, axis
@@ -296,7 +301,6 @@ def nodal_jump(elements: JointElements, nodes: int) -> Jump:
     """Jumps at the points of joint elements per nodal displacement, for a mesh with a number of nodes."""
     n, ne, _ = elements.weights.shape
     rows = np.arange(n * ne)
-    tangent = np.column_stack([-elements.normal[:, 1], elements.normal[:, 0]])
 
     def along(direction: Array) -> csr_array:
         parts = []
@@ -308,4 +312,4 @@ def nodal_jump(elements: JointElements, nodes: int) -> Jump:
                 parts.append(coo_array((values, (rows, 2 * node + axis)), shape=(n * ne, 2 * nodes)))
         return csr_array(sum(parts[1:], start=csr_array(parts[0])))
 
-    return Jump(along(elements.normal), along(tangent))
+    return Jump(along(elements.normal), along(elements.tangent))

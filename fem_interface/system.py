@@ -117,8 +117,7 @@ def _geometry(wall: ModalWall) -> ModalJoints:
         else:
             plain.append((shape, table))
     begin = start[:-1]
-    tangent = np.column_stack([-joint.normal[:, 1], joint.normal[:, 0]])
-    frame = np.stack([joint.normal, tangent], axis=1)[begin]
+    frame = np.stack([joint.normal, joint.tangent], axis=1)[begin]
     shares = np.einsum("pre,rdx->rpdex", joint.weights[:, begin], frame).reshape(len(begin), n, 2, 4)
     shares[np.abs(shares) < ROUNDING] = 0.0
     area = joint.points.area.reshape(n, ne)[:, begin].T[:, :, None, None]

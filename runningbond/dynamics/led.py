@@ -95,7 +95,7 @@ def collapse_of_led(
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
             if traverse.verdict == "undecided" and lead is before:
                 break
-            if _settled(lead, traverses, tolerance) and not _rate(scene):
+            if _has_converged(lead, traverses, tolerance) and not _rate(scene):
                 break
     except KeyboardInterrupt:
         if traverses:
@@ -184,7 +184,7 @@ def _spread(lead: Lead, traverses: list[Traverse]) -> float:
     return (upper - lower) / max(-lower, upper, lead.least) if upper > lower else 0.0
 
 
-def _settled(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
+def _has_converged(lead: Lead, traverses: list[Traverse], tolerance: float) -> bool:
     """Whether half the speed would change the answer, and what else is reported, by less than the tolerance.
 
     If a wall falls off its supports at the same settlement at both speeds, its share may change up to there by more.

@@ -14,7 +14,7 @@ from matplotlib.image import imread
 
 from runningbond.scene import Array, SceneError
 
-from .measured import CYCLIC, MONOTONIC, SWING, MeasuredWall
+from .measured import CYCLIC, MONOTONIC, NOISE, MeasuredWall
 from .table_row import MINUS, NAME, NOTHING, TableRow
 
 DATA = Path(__file__).parent / "data"
@@ -227,7 +227,7 @@ def _check_picture(path: Path) -> None:
 def _is_pushed_left(wall: MeasuredWall) -> bool:
     """Whether a wall was pushed to the negative side: to the positive side only by noise or, if monotonic, less far."""
     right, left = wall.reach
-    return left * SWING > right or (left > right and not wall.is_cyclic)
+    return left * NOISE > right or (left > right and not wall.is_cyclic)
 
 
 def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -> tuple[float, ...]:
@@ -240,7 +240,7 @@ def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -
     recorded: list[float | None] = [None, None]
     if len(wall.curve):
         forces = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
-        least = SWING * max(wall.reach)
+        least = NOISE * max(wall.reach)
         pushed = zip(forces, wall.reach, strict=True)
         recorded = [force if far > least and force > 0 else None for force, far in pushed]
     told = [value for value in printed if value is not None]

@@ -9,7 +9,7 @@ from runningbond.scene import Array
 
 from .table_row import TableRow
 
-SWING = 0.05
+NOISE = 0.05
 """Displacement, relative to the largest, below which a reversal is noise of the record and no turning point of the
 loading."""
 
@@ -108,7 +108,7 @@ class MeasuredWall:
 
 def turning_points(moved: Array) -> list[float]:
     """Turning points of a record of displacements ``(n,)``, and its end."""
-    least = SWING * float(np.ptp(moved)) / 2
+    least = NOISE * float(np.ptp(moved)) / 2
     turns, extreme, sense = list[float](), float(moved[0]), 0.0
     for x in moved.tolist():
         if abs(x - extreme) >= least and (x - extreme) * sense <= 0:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .measured import SWING, MeasuredWall
+from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
 
 LOWER = 0.02
@@ -45,7 +45,7 @@ def _offset(wall: MeasuredWall) -> list[str]:
     if not len(known):
         return []
     (x, y), (far, peak) = known[0], np.abs(known).max(axis=0)
-    is_offset = abs(x) > SWING * far and y * np.sign(x) <= 0
-    is_offset |= abs(y) > SWING * peak and x * np.sign(y) <= 0
+    is_offset = abs(x) > NOISE * far and y * np.sign(x) <= 0
+    is_offset |= abs(y) > NOISE * peak and x * np.sign(y) <= 0
     start = f"{1e3 * x:.3g} mm under {y / 1e3:.3g} kN"
     return [f"the record starts at {start}, and is read as it is; both must count from rest"] if is_offset else []

@@ -14,7 +14,7 @@ import numpy as np
 from runningbond.dynamics.path_curve import LOSS
 from runningbond.scene import Array
 
-from .measured import LARGER, SWING
+from .measured import LARGER, NOISE
 
 SECANT = 0.3
 """Share of the strength at which the secant stiffness is read."""
@@ -94,7 +94,7 @@ def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
 def _pushed(*sides: Array) -> list[Array]:
     """Curves to the sides to which a wall was pushed, without a side reached only by noise on the way back to rest."""
     reach = [float(side[:, 0].max()) for side in sides]
-    return [side for side, far in zip(sides, reach, strict=True) if far > SWING * max(reach)]
+    return [side for side, far in zip(sides, reach, strict=True) if far > NOISE * max(reach)]
 
 
 def _from_rest(curve: Array) -> Array:
@@ -128,7 +128,7 @@ def first_crossing(curve: Array, force: float) -> float | None:
     return float(x0 + (x1 - x0) * (force - y0) / (y1 - y0))
 
 
-def swing(curve: Array, force: float) -> float | None:
+def force_reversal(curve: Array, force: float) -> float | None:
     """Displacement over which a cycle first runs from a force to its opposite; None if it never does.
 
     Both forces lie on one branch, to exclude residual displacements due to friction.
@@ -146,7 +146,7 @@ def swing(curve: Array, force: float) -> float | None:
 
 def _first_swing(curve: Array, force: float) -> float | None:
     """`swing` of the first stretch of a record that has one: branches do not continue across what was not recorded."""
-    swings = (swing(part, force) for part in _parts(curve))
+    swings = (force_reversal(part, force) for part in _parts(curve))
     return next((reach for reach in swings if reach is not None), None)
 
 
@@ -155,16 +155,16 @@ def loops(curve: Array) -> list[Loop]:
 
     A loop leads from an upward zero crossing of the force, where no elastic energy is stored, to the next one. If a
     part of the record returns to its start, its ends form one more loop. Ends of other parts, and pieces no longer than
-    noise (`SWING`), are none.
+    noise (`NOISE`), are none.
     """
     found = list[Loop]()
     for part in _parts(curve):
         part = _with_zeros(part)
-        rises, closed = _rises(part), abs(part[-1, 0] - part[0, 0]) <= SWING * np.ptp(part[:, 0])
+        rises, closed = _rises(part), abs(part[-1, 0] - part[0, 0]) <= NOISE * np.ptp(part[:, 0])
         pieces = [part[start : end + 1] for start, end in pairwise(rises)]
         if closed:
             pieces.append(np.concatenate([part[rises[-1] :], part[: rises[0] + 1]]) if rises else part)
-        least = SWING * np.ptp(part[:, 0])
+        least = NOISE * np.ptp(part[:, 0])
         found += [Loop(float(each[:, 0].max()), _work(each)) for each in pieces if np.ptp(each[:, 0]) > least]
     return found
 
@@ -205,7 +205,7 @@ def _with_zeros(part: Array) -> Array:
 
 def _rises(part: Array) -> list[int]:
     """Upward zero crossings of the force after it was clearly negative, or at the beginning."""
-    least = SWING * float(np.abs(part[:, 1]).max())
+    least = NOISE * float(np.abs(part[:, 1]).max())
     rises, below = list[int](), abs(part[0, 1]) < least
     for k, force in enumerate(part[:, 1].tolist()):
         if below and force >= 0:
@@ -233,7 +233,7 @@ def residual(curve: Array) -> float | None:
 def cycle_ends(path: tuple[float, ...]) -> tuple[float, ...]:
     """Displacements of a path to which a wall is pushed; unloading, to rest or beyond it by noise, does not count."""
     return tuple(
-        goal for start, goal in pairwise((0.0, *path)) if (goal - start) * goal > 0 and abs(goal) > SWING * abs(start)
+        goal for start, goal in pairwise((0.0, *path)) if (goal - start) * goal > 0 and abs(goal) > NOISE * abs(start)
     )
 
 

@@ -65,12 +65,9 @@ class Total:
 
 def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
     """ΔV of each rung that is a model, on the scored walls of each kind for which it has an answer."""
-    groups: dict[tuple[str, str], list[Prediction]] = {}
-    for each in predictions:
-        if each.wall.is_scored and each.error is not None and each.rung.base:
-            groups.setdefault((kind_of(each), each.rung.name), []).append(each)
+    answered = [each for each in predictions if each.wall.is_scored and each.error is not None and each.rung.base]
     found = []
-    for (kind, name), own in groups.items():
+    for (kind, name), own in _by_kind_and_rung(answered).items():
         rung, errors = own[0].rung, [each.error or 0.0 for each in own]
         features = rung.model.is_finite, rung.features.crushes, rung.features.splits
         walls, middle = " ".join(each.wall.name for each in own), median(map(abs, errors))
@@ -86,10 +83,14 @@ def kind_of(prediction: Prediction) -> str:
 def totals(predictions: Sequence[Prediction]) -> list[Total]:
     """Totals of the scored walls, by kind of wall and by rung."""
     scored = [each for each in predictions if each.wall.is_scored]
+    return [_total(*group, own, errors_by_hand(scored)) for group, own in _by_kind_and_rung(scored).items()]
+
+
+def _by_kind_and_rung(predictions: Sequence[Prediction]) -> dict[tuple[str, str], list[Prediction]]:
     groups: dict[tuple[str, str], list[Prediction]] = {}
-    for each in scored:
+    for each in predictions:
         groups.setdefault((kind_of(each), each.rung.name), []).append(each)
-    return [_total(*group, own, errors_by_hand(scored)) for group, own in groups.items()]
+    return groups
 
 
 def errors_by_hand(predictions: Sequence[Prediction]) -> dict[str, float]:

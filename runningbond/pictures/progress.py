@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from dem.pushover import LoadPath, StaticState
+from dem.load_path import LoadPath, StaticState
 from dem.static import BUDGET as STATIC_BUDGET
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dem.lead import reaction
-from dem.pushover import LoadPath, StaticState
+from dem.load_path import LoadPath, StaticState
 from dem.rigid_system import contact_points
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dem.dynamic import dem_dynamic
-from dem.pushover import LoadPath, StaticState
+from dem.load_path import LoadPath, StaticState
 from dem.relaxation import Rest
 from dem.static import dem_static
 from dem.static_system import Control

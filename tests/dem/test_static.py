@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from dem import relaxation, static
 from dem.climb import COSTLY_SOLVES, climb, ends
-from dem.pushover import LoadPath, StaticState
+from dem.load_path import LoadPath, StaticState
 from dem.relaxation import Rest, RestVerdict, relax
 from dem.static import dem_static
 from dem.static_system import Control, static_system

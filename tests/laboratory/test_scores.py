@@ -23,11 +23,11 @@ from runningbond.laboratory.scores import (
     cycle_peaks,
     energy_ratio,
     first_crossing,
+    force_reversal,
     loops,
     marks_of,
     ratio,
     residual,
-    swing,
 )
 from runningbond.laboratory.summary import cheapest, kind_of, totals
 from runningbond.limit import limit
@@ -281,9 +281,9 @@ def test_elastic_cycles_dissipate_no_energy() -> None:
 
 
 def test_swing_needs_both_sides() -> None:
-    assert swing(curve((0, 0), (3, 5), (0, 0)), 3.0) is None
-    assert swing(curve((0, -5), (10, 5)), 3.0) == pytest.approx(6.0)
-    assert swing(curve((0, -5), (1, -4), (5, 4), (6, 5)), 3.0) == pytest.approx(3.0)
+    assert force_reversal(curve((0, 0), (3, 5), (0, 0)), 3.0) is None
+    assert force_reversal(curve((0, -5), (10, 5)), 3.0) == pytest.approx(6.0)
+    assert force_reversal(curve((0, -5), (1, -4), (5, 4), (6, 5)), 3.0) == pytest.approx(3.0)
 
 
 def test_part_of_a_record_is_a_loop_if_it_returns_to_its_start() -> None:
