@@ -146,7 +146,7 @@ class DeformableContacts:
 
     @cached_property
     def _bearing(self) -> Mask:
-        """Which points are half-way to the next one (`HALFWAY`) inside the arcs of their own side's corners, ``(ns,)``."""
+        """Which points are half-way to the next one (`HALFWAY`) inside the arcs of their side's corners, ``(ns,)``."""
         (facet, share, half), nodes, sides = self.blocks.points, self.blocks.nodes, self.blocks.sides
         side = np.repeat(np.arange(len(sides.extent)), np.diff(self.blocks.first))[facet]
         near_end, far_end = (sides.inset[sides.ends[side, end]] for end in (0, 1))

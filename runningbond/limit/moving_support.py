@@ -23,22 +23,25 @@ BRIDGED = "it bridges the support, without which forces balance the dead load"
 JAMMED = "self-locking: the wall holds the support against any force that drives it"
 
 
-def may_leave(system: Equilibrium) -> bool:
+def may_leave(system: Equilibrium, *, dilates: bool) -> bool:
     """Whether the support can leave the wall at rest, without moving any block.
 
-    This is so if it closes no joint, opens the joints that it slides on, and breaks neither joints nor ties.
+    This is so if it closes no joint, opens the joints that it slides on, and breaks neither joints nor ties. Associated
+    joints, which dilate, must open by tan φ times their slip; with true friction any opening ends the contact.
     """
     opening, slip = (rows[[-1]].toarray()[0] for rows in (system.opening, system.slip))
-    if (opening < system.strength.friction * np.abs(slip) - ZERO_SHARE).any():
+    slides = np.abs(slip) > ZERO_SHARE
+    least = system.strength.friction * np.abs(slip) - ZERO_SHARE if dilates else np.where(slides, 1, -1) * ZERO_SHARE
+    if (opening < least).any():
         return False
     alone = np.zeros(len(system.live))
     alone[-1] = 1.0
     return system.load(system.kinematic_multiplier(alone)) >= -ZERO_SHARE
 
 
-def is_bridged(system: Equilibrium, share: float) -> bool:
+def is_bridged(system: Equilibrium, share: float, *, dilates: bool) -> bool:
     """Whether a wall stands without its support, from the smallest share of the dead load on that support."""
-    if share > ZERO_SHARE or not may_leave(system):
+    if share > ZERO_SHARE or not may_leave(system, dilates=dilates):
         return False
     return solve_forces(system, coulomb(system.strength), "zero").status == "optimal"
 
@@ -59,7 +62,7 @@ def bridged_message(system: Equilibrium, otherwise: str) -> str:
 
 def support_verdict(system: Equilibrium, share: float) -> tuple[Status, str]:
     """Status and message of an associated limit analysis, from the smallest share that the support can carry."""
-    if is_bridged(system, share):
+    if is_bridged(system, share, dilates=True):
         return "unbounded", bridged_message(system, "with associated joints; true friction may give way")
     message = "kinematic and static bound, associated joints; true friction may give way at a larger reaction"
     return "collapse", f"{message}; {reaction_note(system.scene, share)}"

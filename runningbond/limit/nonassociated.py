@@ -21,7 +21,7 @@ from .coarse import COARSE_POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
 from .large import search_large, takes_one_start
-from .moving_support import JAMMED, ZERO_SHARE, bridged_message, is_bridged, may_leave, reaction_note
+from .moving_support import JAMMED, bridged_message, is_bridged, reaction_note
 from .search import STARTS, search
 from .search_log import Observer, SearchLog
 
@@ -122,7 +122,7 @@ def _collapse(
     if not proved:
         return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
-    if cut.has_support and loads[-1][1] <= ZERO_SHARE and may_leave(cut):
+    if cut.has_support and is_bridged(cut, loads[-1][1], dilates=False):
         return _bridged(outcome, cut)
     lowest, highest = proved[0], max(proved, key=lambda each: each.most.multiplier)
     least, multiplier, far = lowest.least, cut.load(lowest.least.multiplier), cut.load(highest.most.multiplier)
@@ -263,7 +263,7 @@ def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bound
         return replace(outcome, status="unbounded", message=message)
     if bound is not None and system.has_support:
         share = system.load(bound)
-        if is_bridged(system, share):
+        if is_bridged(system, share, dilates=False):
             return _bridged(outcome, system)
         return replace(outcome, lower=share, message=f"{programs}; lower is the associated bound")
     if bound is not None:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from runningbond.limit import equilibrium, limit, limit_state
+from runningbond.limit import equilibrium, limit, limit_nonassociated, limit_state
 from runningbond.limit.kinematics import dead_load
 from runningbond.limit.settlement import largest_displacement
 from runningbond.models import run_model
@@ -368,6 +368,23 @@ def test_message_states_support_reaction(model: str, motion: dict[str, Any], sai
 def test_ground_that_turns_about_loaded_corner_is_bridged() -> None:
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.1, -1), (2, 0.1)), rotation_angle=1.0, about=(WIDTH, 0.0))
     assert limit(scene).status == "unbounded"
+
+
+@pytest.mark.parametrize("slide", [0.0, 0.001, 0.004, -0.04])
+def test_ground_that_sinks_and_slides_is_bridged(slide: float) -> None:
+    """A block with its centre on the standing part of the ground: with true friction the sinking part loses contact.
+
+    Associated joints dilate: they stay in contact and drag if the ground slides by more than it sinks over tan φ.
+    """
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.7 * WIDTH, -1), (2, 0.1)), by=(slide, -0.001), friction=0.6)
+    assert limit_nonassociated(scene).status == "unbounded"
+    assert limit(scene).status == ("unbounded" if abs(slide) * 0.6 <= 0.001 else "collapse")
+
+
+def test_ground_that_slides_alone_drags() -> None:
+    """Its friction on the block does not end, however far it slides."""
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.7 * WIDTH, -1), (2, 0.1)), by=(0.001, 0.0), friction=0.6)
+    assert limit_nonassociated(scene).status != "unbounded"
 
 
 @pytest.mark.parametrize("clockwise", [-1.0, 1.0])
