@@ -125,7 +125,7 @@ def _moduli(scene: Scene, blocks: list[int], counts: list[ModeCount]) -> Array:
         material = scene.block_materials[scene.material_of_block[block]]
         if count != 3 and material.young is None:
             key = f"{table_of(material)}.young"
-            raise SceneError(key, "is missing; this model needs it unless its blocks are rigid")
+            raise SceneError(key, "is missing: fem needs the stiffness of the blocks; dem-dynamic has rigid ones")
         moduli[:, k] = 0.0 if count == 3 else material.young or 0.0, material.poisson
     return moduli
 

@@ -78,6 +78,8 @@ def merge(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> dic
         if numbered and isinstance(old.get(numbered[1]), Mapping):
             only = _full_name(name, numbered[1])
             raise SceneError(full_name, f"is no entry of a list: {only} is one table, whose keys are {only}.…", value)
+        if numbered and numbered[1] not in old:
+            raise SceneError(full_name, f"is not there: the wall has no {_full_name(name, numbered[1])}", value)
         if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material named kind
             if not isinstance(before, list):
                 merged[key] = merge(before if isinstance(before, Mapping) else {}, value, full_name)

@@ -11,7 +11,7 @@ from tests.at_length import at_length
 
 FOLDER = Path(__file__).parents[2] / "examples" / "walls"
 PAGE = (FOLDER / "README.md").read_text()
-RUNS = re.findall(r"^\$ runningbond (run \S+ --model (\S+))\n(.*)\n +(.*)\n +(.*)\n", PAGE, re.MULTILINE)
+RUNS = re.findall(r"^\$ runningbond (run \S+ --model (\S+))\n(?:note: .*\n)*(.*)\n +(.*)\n +(.*)\n", PAGE, re.MULTILINE)
 SLOW = [run for run in RUNS if ("facade" in run[0] and run[1] != "limit") or run[1] in ("dem-dynamic", "fem")]
 QUICK = [run for run in RUNS if run not in SLOW]
 

@@ -341,6 +341,10 @@ def test_wall_is_plotted_into_given_axes() -> None:
             "load.dead[1] = {'acceleration': [0, -2]}: is not there; load.dead has 1, numbered from 0",
         ),
         (
+            lambda wall: wall.with_({"tie[0].yield": 3.0}),
+            "tie[0] = {'yield': 3.0}: is not there: the wall has no tie",
+        ),
+        (
             lambda wall: wall.with_({"load.live[0].direction": "left"}),
             "is no entry of a list: load.live is one table, whose keys are load.live.…",
         ),

@@ -29,7 +29,7 @@ def _refuse(scene: Scene) -> None:
     if scene.settlement:
         remedy = (
             "is not advised on: λ is the share that the support carries; "
-            "take runningbond run, limit-nonassociated first"
+            "take runningbond run SCENE --model limit-nonassociated"
         )
         raise SceneError("load.live settlement", remedy)
     if scene.history is not None:
