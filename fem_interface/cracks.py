@@ -7,7 +7,7 @@ of the same material too. The paper puts such interfaces between all of its tria
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 import shapely
@@ -16,6 +16,7 @@ from scipy.sparse import coo_array, csr_array
 from meshing import WallMesh
 from runningbond.joints import joint_stiffness
 from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
+from runningbond.scene.ranges import one_of
 
 from .operators import edges_between, find_edges
 
@@ -145,8 +146,7 @@ def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
     SceneError
         If blocks are to crack and the scene gives no `inner_joint`, or has ties or supports that move.
     """
-    if cracks not in ("joints", "blocks"):
-        raise ValueError(f'cracks = {cracks!r}: must be "joints" or "blocks"')
+    one_of("cracks", cracks, get_args(Cracks))
     if cracks == "joints":
         return Pieces(scene, mesh, np.arange(len(scene.blocks)), np.arange(len(mesh.points)))
     if other := [key for key in scene.extras if not key.startswith("beam")]:

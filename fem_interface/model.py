@@ -6,6 +6,7 @@ equivalent to nodal ones, and in which stiff deformations can be slowed down one
 """
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, get_args
 
@@ -49,6 +50,14 @@ from .node_outline import node_outline
 from .operators import PointsOn
 from .piece_masses import with_heavier_pieces
 from .system import system_of
+
+WORDS = {
+    "points": get_args(PointsOn),
+    "cracks": get_args(Cracks),
+    "loads": get_args(Loads),
+    "energies": get_args(Energies),
+}
+"""The words of each setting, the default first."""
 
 REPORTED_COMPLIANCE = 0.15
 """Compliance of inner joints, relative to that of the triangles, above which the outcome's message reports it."""
@@ -110,15 +119,12 @@ def fem(
     """
     check_scene(scene)
     start = time.perf_counter()
-    words = (("points", points, PointsOn), ("cracks", cracks, Cracks), ("loads", loads, Loads))
-    for setting, word, known in (*words, ("energies", energies, Energies)):
-        one_of(f"model fem: {setting}", word, get_args(known))
+    words = {"points": points, "cracks": cracks, "loads": loads, "energies": energies}
+    for setting, word in words.items():
+        one_of(f"model fem: {setting}", word, WORDS[setting])
     finite = are_finite(displacements, "fem", scene, distance) or bool(scene.history)
     if finite:
-        taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
-        for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
-            if value != only:
-                raise SceneError(f"model fem: {name}", "is not supported at finite displacements; leave it out", value)
+        _check_finite(rule, words)
     with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
         if finite:
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
@@ -155,6 +161,13 @@ def fem(
         elements = wall.elements
         outcome = replace(outcome, force=at_ends(scene, elements.points.part(elements.listing), outcome.force))
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def _check_finite(rule: Rule | None, words: Mapping[str, str]) -> None:
+    """Refuse settings other than the default ones at finite displacements."""
+    for setting, value in {"rule": rule, **words}.items():
+        if value != WORDS.get(setting, (None,))[0]:
+            raise SceneError(f"model fem: {setting}", "is not supported at finite displacements; leave it out", value)
 
 
 def at_ends(scene: Scene, points: JointPoints, force: Array) -> Array:

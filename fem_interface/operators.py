@@ -4,7 +4,7 @@ Degrees of freedom are ordered by node, x before y: 2i and 2i + 1 are the displa
 """
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, vstack
@@ -28,6 +28,7 @@ from meshing import WallMesh
 from runningbond.joints import JointPoints, Rule, wall_inset, wall_rule
 from runningbond.limit.kinematics import Jump
 from runningbond.scene import Array, Indices, Mask, Scene, SceneError
+from runningbond.scene.ranges import one_of
 
 PointsOn: TypeAlias = Literal["elements", "joints"]
 """What a quadrature rule is applied to: every joint element, or every whole joint, however many elements it has."""
@@ -169,8 +170,7 @@ def joint_elements(
     SceneError
         If the inset leaves nothing of a joint's first or last element.
     """
-    if points not in ("elements", "joints"):
-        raise ValueError(f'points = {points!r}: must be "elements" or "joints"')
+    one_of("points", points, get_args(PointsOn))
     rule = rule or wall_rule(scene)
     inset = wall_inset(scene)
     element, local, share = (_on_elements if points == "elements" else _on_joints)(mesh, scene, rule, inset)

@@ -71,20 +71,8 @@ def sweep(
     """
     model = going_far(find_model(model), displacements, distance)
     check_wall(wall)
-    if not isinstance(changes, Mapping):
-        remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
-        raise SceneError("changes", remedy, changes)
-    for key, values in changes.items():
-        if key in ANSWER:
-            raise SceneError(key, "is no key of a scene, but a column of the sweep's table", values)
-        is_single = isinstance(values, (str, bytes, Mapping)) or (isinstance(values, np.ndarray) and not values.ndim)
-        if is_single or not isinstance(values, Iterable):
-            raise SceneError(key, "must be a list of the values that it is to take", values)
-    changes = {key: list(values) for key, values in changes.items()}
-    for key, values in changes.items():
-        if not values:
-            raise SceneError(key, "must have one value or more to take", values)
-    cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
+    values_of = _values_of(changes)
+    cases = [dict(zip(values_of, values, strict=True)) for values in product(*values_of.values())]
     scenes: dict[str, Scene] = {}
     names: list[str] = []
     refusals: dict[tuple[str, str], SceneError] = {}
@@ -114,4 +102,22 @@ def sweep(
     for cell, reason in (refusals | campaign.inapplicable).items():
         answers[cell] = {"status": "refused", "message": str(reason)}
     rows = [{**answers[name, model.name], **case} for name, case in zip(names, cases, strict=True)]
-    return table({key: [row.get(key) for row in rows] for key in (*changes, *ANSWER)})
+    return table({key: [row.get(key) for row in rows] for key in (*values_of, *ANSWER)})
+
+
+def _values_of(changes: object) -> dict[str, list[Any]]:
+    """The values of each key that varies, checked."""
+    if not isinstance(changes, Mapping):
+        remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
+        raise SceneError("changes", remedy, changes)
+    for key, values in changes.items():
+        if key in ANSWER:
+            raise SceneError(key, "is no key of a scene, but a column of the sweep's table", values)
+        is_single = isinstance(values, (str, bytes, Mapping)) or (isinstance(values, np.ndarray) and not values.ndim)
+        if is_single or not isinstance(values, Iterable):
+            raise SceneError(key, "must be a list of the values that it is to take", values)
+    found = {key: list(values) for key, values in changes.items()}
+    for key, values in found.items():
+        if not values:
+            raise SceneError(key, "must have one value or more to take", values)
+    return found

@@ -28,7 +28,8 @@ class State:
     contacts: Contacts | None = None
     bears: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (nc,) the contacts' frames (`joints.frames`)
     external: float = 0.0  # work of the loads [J]
-    # part of it: by how much the work of dead loads exceeds that of the same loads constant as at rest [J] (`rig`)
+    # part of it: by how much the work of dead loads exceeds that of the same loads constant as at rest [J] (`rig`,
+    # `turning_loads`)
     turned: float = 0.0
     multiplier: float = 0.0  # of the live load, if it drives: its mean over the last steps
     steps: int = 0  # steps taken

@@ -77,7 +77,7 @@ def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
         return None
     strength = float(np.mean(peaks))
     force = SECANT * strength
-    reach = _first_swing(curve, force) if cyclic else first_crossing(sides[0], force)
+    reach = _first_reversal(curve, force) if cyclic else first_crossing(sides[0], force)
     stiffness = (2 if cyclic else 1) * force / reach if reach is not None and reach > 0 else None
     first = sides[0]
     top = int(first[:, 1].argmax())
@@ -144,10 +144,10 @@ def force_reversal(curve: Array, force: float) -> float | None:
     return None
 
 
-def _first_swing(curve: Array, force: float) -> float | None:
-    """`swing` of the first stretch of a record that has one: branches do not continue across what was not recorded."""
-    swings = (force_reversal(part, force) for part in _parts(curve))
-    return next((reach for reach in swings if reach is not None), None)
+def _first_reversal(curve: Array, force: float) -> float | None:
+    """`force_reversal` of the first stretch of a record that has one: branches do not continue across gaps."""
+    reversals = (force_reversal(part, force) for part in _parts(curve))
+    return next((reach for reach in reversals if reach is not None), None)
 
 
 def loops(curve: Array) -> list[Loop]:

@@ -26,12 +26,12 @@ JAMMED = "self-locking: the wall holds the support against any force that drives
 def may_leave(system: Equilibrium, *, dilates: bool) -> bool:
     """Whether the support can leave the wall at rest, without moving any block.
 
-    This is so if it closes no joint, opens the joints that it slides on, and breaks neither joints nor ties. Associated
-    joints, which dilate, must open by tan φ times their slip; with true friction any opening ends the contact.
+    This is so if it closes no joint, opens the joints that it slides on with friction, and breaks neither joints nor
+    ties. Associated joints, which dilate, must open by tan φ times their slip; with true friction any opening will do.
     """
     opening, slip = (rows[[-1]].toarray()[0] for rows in (system.opening, system.slip))
-    slides = np.abs(slip) > ZERO_SHARE
-    least = system.strength.friction * np.abs(slip) - ZERO_SHARE if dilates else np.where(slides, 1, -1) * ZERO_SHARE
+    drag = system.strength.friction * np.abs(slip)
+    least = drag - ZERO_SHARE if dilates else np.where(drag > ZERO_SHARE, ZERO_SHARE, -ZERO_SHARE)
     if (opening < least).any():
         return False
     alone = np.zeros(len(system.live))

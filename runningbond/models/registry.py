@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import partial
 from importlib import import_module
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.own_packages import hidden_package, prefer_to_folders
@@ -18,9 +18,6 @@ from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
 from .second_opinion import REFINEMENT, asks_others, beside_others
-
-if TYPE_CHECKING:
-    pass  # needs a compiler
 
 DRY = frozenset({"block.density", "block.thickness", "joint.friction"})
 STRENGTH = DRY | {"joint.law", "joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}

@@ -280,7 +280,7 @@ def test_elastic_cycles_dissipate_no_energy() -> None:
     assert ratio(1.0, 0.0) is None
 
 
-def test_swing_needs_both_sides() -> None:
+def test_force_reversal_needs_both_sides() -> None:
     assert force_reversal(curve((0, 0), (3, 5), (0, 0)), 3.0) is None
     assert force_reversal(curve((0, -5), (10, 5)), 3.0) == pytest.approx(6.0)
     assert force_reversal(curve((0, -5), (1, -4), (5, 4), (6, 5)), 3.0) == pytest.approx(3.0)
