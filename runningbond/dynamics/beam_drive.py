@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from runningbond.results.outcome import number
 from runningbond.scene import Array
 
 from .lead import RAMP, ROWS, STRIDE, Lead, pace
@@ -62,11 +63,19 @@ class BeamDrive(Lead):
     def growth_left(self, traverse: Traverse) -> float:
         """Force [N] by which the answer may grow beyond the end of the path, at small displacements.
 
-        At finite ones collisions and cracks make forces rise and fall, so that their slope says little.
+        At finite ones collisions and cracks make forces rise and fall, so that their slope is uncertain: see `doubt`.
         """
-        if traverse.verdict == "collapse" or not self.is_small:
-            return 0.0
-        return growth_left(self._unbraked(traverse.curve))
+        return self._growth_along_slope(traverse) if self.is_small else 0.0
+
+    def doubt(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on a force that would grow by more than a tolerance on a longer path, at finite displacements."""
+        grown = traverse.answer + self._growth_along_slope(traverse)
+        if self.is_small or grown <= (1 + tolerance) * traverse.answer:
+            return ""
+        return f"still rising at the end, along its slope to {number(grown)} on a path twice as long"
+
+    def _growth_along_slope(self, traverse: Traverse) -> float:
+        return 0.0 if traverse.verdict == "collapse" else growth_left(self._unbraked(traverse.curve))
 
     def _unbraked(self, curve: Array) -> Array:
         """A curve ``(n, 2)`` without the rows in which the drive brakes before it turns or ends: blocks push it on."""

@@ -155,6 +155,10 @@ class Lead(ABC):
         """Whether supports that move carry nothing at a place of the path."""
         return False
 
+    def doubt(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on an answer that may still change by more than a tolerance although a mechanism counts as formed."""
+        return ""
+
     def before(self, curve: Array) -> str:
         """Note on the part of a curve ``(n, 2)`` before the answer; may be empty."""
         return ""

@@ -269,7 +269,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         return replace(outcome, message=f"no answer: {why}; {what}")
     told = f"; {lead.fall(traverse)}" if fell else ""
     told += "" if lead.moves or not fell else ", and the answer is that of its last rest"
-    return replace(outcome, status="collapse", multiplier=traverse.answer, message=what + told)
+    message = joined(what + told, lead.doubt(traverse, tolerance))
+    return replace(outcome, status="collapse", multiplier=traverse.answer, message=message)
 
 
 def _answer(outcome: Outcome, lead: Lead, traverses: list[Traverse]) -> str:

@@ -1,6 +1,7 @@
 """Driven walls of deformable blocks at finite displacements, against rigid blocks and exact solutions."""
 
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -80,6 +81,23 @@ def test_crushing_and_softening_are_spread_along_joints(far: float, strength: di
     ours = fem(scene, displacements="finite", cells=cells)
     assert ours.lower == pytest.approx(other.lower, rel=7e-3)
     assert ours.upper == pytest.approx(other.upper, rel=7e-3)
+
+
+def test_message_reports_a_force_that_still_rises_at_the_end_of_a_path() -> None:
+    """The points of a softening joint crack one after the other: 5 % more is borne on a path four times as long."""
+    joint = {"friction": 0.9, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    joint |= {"cohesion": 4e5, "tensile_strength": 1e5, "fracture_energy_1": 10.0, "fracture_energy_2": 10.0}
+    drives = [{"displacement": [far, 0], "at": 0.6} for far in (0.002, 0.008)]
+    short, long = (
+        run_model("dem-dynamic", stone(beam__drive=drive, joint=joint), displacements="finite") for drive in drives
+    )
+    assert short.lower is not None
+    assert long.lower is not None
+    assert long.lower > 1.05 * short.lower
+    told = re.search(r"still rising at the end, along its slope to ([\d,]+) on a path twice as long", short.message)
+    assert told is not None
+    assert float(told[1].replace(",", "")) == pytest.approx(long.lower, rel=0.03)
+    assert "still rising" not in long.message
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3])
