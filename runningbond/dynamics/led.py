@@ -277,5 +277,5 @@ def _answer(outcome: Outcome, lead: Lead, traverses: list[Traverse]) -> str:
     """Name of the answer, with how it was obtained and where displacements are read."""
     what = lead.answer + (", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds")
     if len(traverses) > 1 and (apart := lead.apart(*traverses[-2:])):
-        what += f", whose curves are {100 * apart:.2g} % of it apart until half of it is left"
+        what += f", whose curves differ by {100 * apart:.2g} % of it on average, as far as they stay above half of it"
     return joined(what, lead.other_way(outcome.curve), lead.displacements, lead.before(outcome.curve), lead.read_at)
