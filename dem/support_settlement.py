@@ -70,7 +70,7 @@ class StaticSettlement(StaticLead):
 
     def reached(self, curve: Array) -> float:
         """Settlement [m] at the end of a curve ``(n, 2)``."""
-        return float(curve[-1, 0])
+        return float(abs(curve[-1, 0]))
 
     def growth_left(self, curve: Array) -> float:
         """No growth: a share that still changes is told as such."""

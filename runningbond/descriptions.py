@@ -67,14 +67,15 @@ def keys_of_name(name: str, table: Mapping[Any, Any]) -> list[str | int]:
     return [*path, *keys_of_name(rest, inner if isinstance(inner, Mapping) else {})]
 
 
-def merge(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
-    """A table with the keys of another put in or, if they are None, removed; list entries are changed by index."""
+def merge(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "", *, is_list: bool = False) -> dict[Any, Any]:
+    """A table with the keys of another put in or, if they are None, removed; a list is a table with numbers as keys."""
     merged = dict(old)
-    for key, value in new.items():
+    for given, value in new.items():
+        key = given if is_list else str(given)
         before, full_name = merged.get(key), _full_name(name, key)
-        if isinstance(key, int) and key not in old:
+        if is_list and key not in old:
             raise SceneError(full_name, f"is not there; {name} has {len(old)}, numbered from 0", value)
-        numbered = isinstance(key, str) and key not in old and re.fullmatch(r"(.+?)\[\d+\]", key)
+        numbered = not is_list and key not in old and re.fullmatch(r"(.+?)\[\d+\]", key)
         if numbered and isinstance(old.get(numbered[1]), Mapping):
             only = _full_name(name, numbered[1])
             raise SceneError(full_name, f"is no entry of a list: {only} is one table, whose keys are {only}.…", value)
@@ -84,7 +85,7 @@ def merge(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> dic
             if not isinstance(before, list):
                 merged[key] = merge(before if isinstance(before, Mapping) else {}, value, full_name)
             elif value and all(isinstance(number, int) for number in value):
-                merged[key] = list(merge(dict(enumerate(before)), value, full_name).values())
+                merged[key] = list(merge(dict(enumerate(before)), value, full_name, is_list=True).values())
             else:
                 what = f"is a list, which is changed as a whole, or by entry, {full_name}[0]"
                 raise SceneError(full_name, what, before)

@@ -56,6 +56,10 @@ class BeamDrive(Lead):
         broken = self._toes.broken(opening, damage, crushed, right=moved * self.first_move >= 0)
         return rotation, uplift, run.ledger(state).friction, broken
 
+    def reached(self, curve: Array) -> float:
+        """Largest displacement [m] along the first move, to which the answer belongs."""
+        return float(curve[:, 0].max())
+
     def other_way(self, curve: Array) -> str:
         """Note on the largest reaction in the other direction of a cyclic drive."""
         return other_way(self.goals, curve)

@@ -247,6 +247,13 @@ def test_final_state_of_portal_does_not_depend_on_settlement_path(
     assert outcome.curve[-1, 0] == pytest.approx(0.01 * path[-1])
 
 
+@pytest.mark.parametrize(("path", "sense"), [((1.0, -0.5), -1.0), ((0.5, -1.0), 1.0)])
+def test_motion_is_drawn_where_the_settlement_is_farthest(path: tuple[float, ...], sense: float) -> None:
+    """The pier sinks at the start of both paths, and is lifted farther than that by one of them."""
+    outcome = dem_static(wall(PORTAL, replace(ground_moves(1.8, 3.0, (0.0, -0.01)), path=path)))
+    assert outcome.motion[1] / abs(outcome.motion[1, 1]) == pytest.approx([0.0, sense, 0.0], abs=2e-3)
+
+
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic])
 @pytest.mark.parametrize(("by", "path"), [(-1e-6, (-1.0,)), (1e-6, (1.0,))])
 def test_slightly_lifted_pier_gives_one_sided_bound(
@@ -358,6 +365,26 @@ def test_slightly_moved_support_is_undecided() -> None:
     assert f"it bears {number(outcome.curve[-1, 1])} at 1e-06 m; " in outcome.message
     assert outcome.upper == pytest.approx(outcome.curve[-1, 1], rel=1e-6)
     assert 1.375 / 3 < outcome.curve[-1, 1] < 0.5
+
+
+def test_answer_of_a_cycle_is_the_reaction_along_its_first_move() -> None:
+    """Elastic: twice the reaction at twice the displacement the other way."""
+    outcome = dem_static(under_beam("level", Drive.along((1e-5, -2e-5), 2.0)))
+    moved, force = outcome.curve.T
+    assert outcome.lower == pytest.approx(force[moved.argmax()], rel=1e-9)
+    assert f"{number(force.max())} at 1e-05 m" in outcome.message
+    assert force.min() == pytest.approx(-2 * force.max(), rel=1e-6)
+
+
+def test_displacements_of_a_drive_start_at_rest_under_the_dead_load() -> None:
+    """A third of the weight pushes sideways beforehand, by a displacement that is no part of the path."""
+    beam = {"height": 0.1, "force": [0, -5e3], "drive": {"displacement": [1e-5, 0.0]}}
+    sideways = {"kind": "body", "acceleration": [3.27, 0.0]}
+    springs = {"joint__normal_stiffness": 1e9, "joint__shear_stiffness": 4e8}
+    outcome = dem_static(panel(load__live=None, load__dead=sideways, beam=beam, **springs))
+    assert outcome.curve[0, 0] == pytest.approx(0.0, abs=1e-15)
+    assert outcome.curve[0, 1] == pytest.approx(0.0, abs=1e-6)
+    assert outcome.curve[-1, 0] == pytest.approx(1e-5, rel=1e-9)
 
 
 def test_drive_ending_in_elastic_range_is_undecided() -> None:

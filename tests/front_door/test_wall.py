@@ -11,6 +11,7 @@ import runningbond as rb
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.commands.command_line import command
 from runningbond.compare.published import PUBLISHED, published_scene
+from runningbond.descriptions import as_in_a_file
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.schema import scene_schema
 from runningbond.wall import TOP_LEVEL
@@ -72,6 +73,26 @@ def test_tuples_and_arrays_are_accepted_as_lists() -> None:
     mixed: Any = ((1, 1), np.array([0.5, 1, 0.5]))
     assert same_scene(rb.Wall.courses(mixed, **size).scene, by_lists.scene)
     assert by_lists.with_({"joint.friction": np.float32(0.5)}).scene.joint.friction == 0.5
+
+
+def test_table_named_by_a_number_is_no_list() -> None:
+    """Materials 1 and 2, as users number them: the names are text, as in a file."""
+    wall = rb.Wall.running_bond(**PANEL, materials={1: {"density": 1800.0}}, assign=[{"block": "1", "blocks": [0]}])
+    assert wall.description["materials"] == {"1": {"density": 1800.0}}
+    assert wall.with_(materials={1: {"density": 1700.0}}).description["materials"] == {"1": {"density": 1700.0}}
+
+
+def test_description_has_only_the_types_of_a_file() -> None:
+    """An array of unequal rows, an array without dimensions, a name that is a number, and a path."""
+    rows = np.array([np.array([1, 1]), np.array([0.5, 1, 0.5])], dtype=object)
+    size = {key: PANEL[key] for key in ("block_width", "block_height", "density", "friction")}
+    thickness: Any = np.array(0.12, dtype=object)
+    given: Any = rows
+    wall = rb.Wall.courses(given, **size, thickness=thickness)
+    assert wall.description["wall"]["courses"] == [[1, 1], [0.5, 1, 0.5]]
+    assert wall.description["wall"]["thickness"] == 0.12
+    assert all(isinstance(row, list) for row in as_in_a_file(rows))
+    assert as_in_a_file({1: Path("a") / "b.dxf"}) == {"1": str(Path("a") / "b.dxf")}
 
 
 def test_with_changes_a_copy_only() -> None:
@@ -183,6 +204,14 @@ def test_entries_of_lists_are_changed_by_their_numbers() -> None:
         [1, 1],
         [0.25, 1.25, 0.5],
     ]
+
+
+def test_list_is_not_changed_by_number_and_by_name_at_once() -> None:
+    """A name among the numbers would become one more tie."""
+    tie = {"from": [0.12, 0.03], "to": [1.32, 0.03], "area": 1e-4, "young": 2.1e11, "yield": 1e3}
+    wall = rb.Wall.running_bond(**PANEL, tie=[tie, tie])
+    with pytest.raises(SceneError, match=re.escape("is a list, which is changed as a whole, or by entry, tie[0]")):
+        wall.with_({"tie[0].yield": 4e3, "tie.yield": 3e3})
 
 
 def test_sweep_over_the_yield_force_of_a_tie() -> None:

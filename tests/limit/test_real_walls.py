@@ -370,6 +370,32 @@ def test_ground_that_turns_about_loaded_corner_is_bridged() -> None:
     assert limit(scene).status == "unbounded"
 
 
+@pytest.mark.parametrize(("model", "between"), [*[(model, False) for model in MODELS], ("limit", True)])
+def test_wall_that_bridges_by_friction_is_told_from_one_that_needs_none(model: str, between: bool) -> None:
+    """A block whose middle is above standing ground, and one that hangs between two walls.
+
+    With true friction it may slip down, because nothing says how hard the walls press it.
+    """
+    walls = (rectangle(-1, 0.1, 1, 2), rectangle(WIDTH, 0.1, 1, 2)) if between else ()
+    ground = rectangle(-1, -1, WIDTH + 2, 1)
+    box = ((-1.0 if between else 0.4, -1), (2, 0.05))
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], box, by=(0.0, -0.02), grounds=(ground, *walls))
+    outcome = run_model(model, scene)
+    assert outcome.status == "unbounded"
+    assert "bridges the support" in outcome.message
+    assert ("by normal forces alone" in outcome.message) == (not between)
+
+
+@BOTH
+@pytest.mark.parametrize("share", [1e-5, 1e-3])
+def test_support_that_bears_little_is_not_bridged(model: str, share: float) -> None:
+    """The ground sinks from c = (1/2 − λ) b / (1 − λ) on, a little short of the middle of the block."""
+    cut = (0.5 - share) * WIDTH / (1 - share)
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), by=(0.0, -0.02), friction=2.0)
+    assert collapse(model, scene) == pytest.approx(share, rel=1e-3)
+    assert f"bears {share * WEIGHT:.5g} N" in run_model(model, scene).message
+
+
 @pytest.mark.parametrize("slide", [0.0, 0.001, 0.004, -0.04])
 def test_ground_that_sinks_and_slides_is_bridged(slide: float) -> None:
     """A block with its centre on the standing part of the ground: with true friction the sinking part loses contact.

@@ -9,8 +9,9 @@ import runningbond as rb
 from dem.stiffness_update import resultant_wall
 from runningbond.compare import published_scene
 from runningbond.limit import elastic_displacement
-from runningbond.models import find_model, run_model
+from runningbond.models import MODELS, find_model, run_model
 from runningbond.models.far import going_far
+from runningbond.models.notes import keeps_strength
 from tests.at_length import at_length
 from tests.walls import courses, panel
 
@@ -135,3 +136,15 @@ def test_modulus_of_named_material_does_not_soften_rigid_blocks(model: str) -> N
     assert soft.status == "collapse"
     assert (soft.lower, soft.upper) == (rigid.lower, rigid.upper)
     assert soft.message == f"{rigid.message}; not taken into account: materials.soft.young"
+
+
+def test_lost_strength_is_told_if_one_joint_loses_it_and_the_model_does_not_follow() -> None:
+    """The joints on the ground soften, and those above it do not; `dem-static` keeps their strength."""
+    mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+    fracture = {"cohesion": 1e5, "tensile_strength": 1e5, "fracture_energy_1": 10.0, "fracture_energy_2": 100.0}
+    lime = {"friction": 0.6, "mortar": mortar, **fracture}
+    assign = [{"joint": "lime", "box": [[-1.0, -0.01], [2.0, 0.01]]}]
+    strong, weak = panel(joint__mortar=mortar), panel(joint__mortar=mortar, joints={"lime": lime}, assign=assign)
+    assert "keep the strength that they lose" in keeps_strength(MODELS["dem-static"], weak)
+    assert keeps_strength(MODELS["dem-dynamic"], weak) == ""
+    assert keeps_strength(MODELS["dem-static"], strong) == ""

@@ -11,7 +11,17 @@ from scipy.integrate import quad
 
 from runningbond.commands.command_line import command
 from runningbond.models import MODELS, run_model
-from runningbond.scene import History, Scene, SceneError, scene_from_dict
+from runningbond.scene import (
+    BlockMaterial,
+    History,
+    JointMaterial,
+    Lateral,
+    Load,
+    Scene,
+    SceneError,
+    build_scene,
+    scene_from_dict,
+)
 from runningbond.scene.history import STANDARD_GRAVITY, pulse
 from runningbond.scene.records import read_record
 from tests.walls import content, write_toml
@@ -357,6 +367,20 @@ def test_record_that_is_a_pipe_is_refused_without_waiting(tmp_path: Path) -> Non
 def test_keys_that_conflict_with_a_history_are_refused(changes: dict[str, Any], said: str) -> None:
     with pytest.raises(SceneError, match=said):
         scene_from_dict(content(**{"load__live": None, "load__history": PULSE, **changes}))
+
+
+def test_python_refuses_a_history_beside_another_live_load() -> None:
+    history = of(PULSE)
+    square = [np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])]
+    with pytest.raises(SceneError, match=r"load\.live: does not go with load\.history"):
+        build_scene(
+            "two",
+            square,
+            thickness=0.1,
+            block=BlockMaterial(1800.0),
+            joint=JointMaterial(0.6),
+            load=Load(live=(history, Lateral())),
+        )
 
 
 @pytest.mark.parametrize(

@@ -261,7 +261,10 @@ def test_moments_add_and_are_neither_mass_nor_point_forces() -> None:
         ({"kind": "body"}, "load.live.acceleration: is missing"),
         (Moments(0.0), "load.live = Moments(moment=0.0): must put finite forces on the blocks, not all of them zero"),
         (Moments(float("nan")), "must put finite forces on the blocks"),
+        (Moments(float("inf")), "must put finite forces on the blocks"),
         (Push([78]), "must put finite forces on the blocks, not all of them zero on those that move"),
+        # what is left acts on the ground, which does not move
+        ([Push([0, 78]), {"kind": "point", "at": [0, 0], "force": [-1, 0]}], "load.live: must not cancel out"),
         ([DOWN, Push([79])], "load.live[1].block = [79]: must be numbers of blocks, 0 … 78"),
         (Push(-1), "load.live.block = -1: must be numbers of blocks, 0 … 78"),
         (Push([True, False]), "load.live.block = [True, False]: must be numbers of blocks, 0 … 78"),
@@ -279,6 +282,19 @@ def test_python_refuses_objects_that_are_no_loads() -> None:
     with pytest.raises(SceneError, match=r"load\.live"):
         Load(live=(3,))  # type: ignore[arg-type]
     assert Load(live=Lateral()) == Load()  # type: ignore[arg-type]
+
+
+def test_wall_without_any_live_load_is_refused() -> None:
+    square = [np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])]
+    with pytest.raises(SceneError, match=r"load\.live: is missing: nothing is multiplied by λ"):
+        build_scene(
+            "dead",
+            square,
+            thickness=0.1,
+            block=BlockMaterial(1800.0),
+            joint=JointMaterial(0.6),
+            load=Load(live=()),
+        )
 
 
 @pytest.mark.parametrize("ends", [(0.0, 1.44), (0.1, 0.5), (0.3, 1.2)])

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from runningbond.commands.command_line import command
-from runningbond.scene import SceneError, scene_from_dict
+from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.schema import LISTED, PLAIN
-from tests.walls import content, panel, write_toml
+from tests.walls import content, courses, panel, write_toml
 
 from .test_scene import drawing
 
@@ -366,6 +366,20 @@ def test_invalid_drawing_is_refused(
     assert not (tmp_path / "out").exists()
 
 
+def test_inset_is_compared_with_the_joints_of_its_material() -> None:
+    """Those of lime are on the ground, 0.12 and 0.24 m long, and those between blocks of a course are 0.06 m long."""
+    rows: list[list[float]] = [[0.5, 1, 0.5], [1, 1]]
+
+    def wall(inset: float) -> Scene:
+        lime = {"friction": 0.7, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}, "inset": inset}
+        assign = [{"joint": "lime", "box": [[-1.0, -0.01], [2.0, 0.01]]}]
+        return courses(rows, width=0.24, height=0.06, joints={"lime": lime}, assign=assign)
+
+    assert {material.inset for material in wall(0.059).joint_materials} == {0.0, 0.059}
+    with pytest.raises(SceneError, match=r"inset = 0\.13: must be less than half the shortest joint, 0\.12 m long"):
+        wall(0.13)
+
+
 @pytest.mark.parametrize("opposite", ["left", [-1.0, 0.0]])
 def test_live_loads_that_cancel_are_refused(opposite: Any) -> None:
     """Every model would report self-locking; opposite point loads on different blocks are accepted."""
@@ -374,3 +388,14 @@ def test_live_loads_that_cancel_are_refused(opposite: Any) -> None:
         panel(load__live=loads)
     apart = [{"kind": "point", "at": [x, 0.33], "force": [force, 0.0]} for x, force in ((0.1, 5.0), (0.5, -5.0))]
     assert panel(load__live=apart).load.live
+
+
+@pytest.mark.parametrize(("last", "cancels"), [(-0.3, True), (-0.3 + 1e-9, False)])
+def test_live_loads_cancel_up_to_rounding_alone(last: float, cancels: bool) -> None:
+    """0.1 + 0.2 − 0.3 is 6e-17 in floating point; one part in a billion of a load is a load."""
+    loads = [{"kind": "point", "at": [0.1, 0.33], "force": [force, 0.0]} for force in (0.1, 0.2, last)]
+    if cancels:
+        with pytest.raises(SceneError, match=r"load\.live: must not cancel out on every block"):
+            panel(load__live=loads)
+    else:
+        assert len(panel(load__live=loads).load.live) == 3

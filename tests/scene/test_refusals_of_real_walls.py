@@ -123,6 +123,14 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live(SINK | {"amplitudes": [1], "rate": 1e-3}), "load.live[0].rate = 0.001: is not a key"),
         (live(SINK | {"path": [1, -1]}), "load.live settlement, along a path: is not supported by model limit"),
         ({"load__live": [SINK, {"kind": "lateral"}]}, "load.live: must be the settlement alone"),
+        (
+            {"load__live": [SINK, {"kind": "lateral"}], "beam": {"height": 0.25}},
+            "load.live: must be the settlement alone",
+        ),
+        (
+            {"load__live": SINK, "load__dead": {"kind": "point", "at": [9, 9], "force": [0, -1]}},
+            "load.dead.at = [9.0, 9.0]: touches no block",
+        ),
         (live(SINK) | {"support__kind": "corners"}, "load.live: needs support.kind"),
         # ties
         ({"tie": {"from": [0, 0]}}, "tie = {'from': [0, 0]}: must be tables, [[tie]]"),
