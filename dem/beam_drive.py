@@ -87,10 +87,6 @@ class StaticBeamDrive(StaticLead):
         """Reaction [N] by which the largest of a curve ``(n, 2)`` may grow beyond the end of its path."""
         return growth_left(curve)
 
-    def has_formed(self, curve: Array, *, tolerance: float, room: float) -> bool:
-        """Whether the largest reaction of a curve ``(n, 2)`` grows by no more than `room` on a path twice as long."""
-        return growth_left(curve) <= room
-
     def unfinished(self, curve: Array) -> tuple[str, bool]:
         """Note on a wall that still hardens: its answer can only become larger."""
         return "the wall still hardens where its drive ends, which takes", False

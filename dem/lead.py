@@ -94,19 +94,16 @@ class StaticLead(ABC):
         """Displacement [m] up to which a curve ``(n, 2)`` goes."""
 
     @abstractmethod
-    def growth_left(self, curve: Array) -> float:
-        """Force by which the answer of a curve ``(n, 2)`` may grow beyond the end of its path."""
-
-    @abstractmethod
-    def has_formed(self, curve: Array, *, tolerance: float, room: float) -> bool:
-        """Whether a mechanism has formed at the end of a curve ``(n, 2)``.
-
-        Its answer changes by less than a relative tolerance, or has at most `room` to grow, a part of that tolerance.
-        """
-
-    @abstractmethod
     def unfinished(self, curve: Array) -> tuple[str, bool]:
         """Note on a curve ``(n, 2)`` whose mechanism has not formed, and whether its answer can only become smaller."""
+
+    def growth_left(self, curve: Array) -> float:
+        """Force by which the answer of a curve ``(n, 2)`` may grow beyond the end of its path."""
+        return 0.0
+
+    def has_formed(self, curve: Array, tolerance: float) -> bool:
+        """Whether, apart from `growth_left`, the answer no longer changes by more than a tolerance."""
+        return True
 
     def other_way(self, curve: Array) -> str:
         """Note on the largest reaction in the other direction; may be empty."""

@@ -183,9 +183,9 @@ def _judge(
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     room = tolerance - _spread(lead, [lower, upper])
     room = (room if room > 0 else tolerance) * max(upper, lead.least)
-    if not traverse.fell:
-        upper += lead.growth_left(outcome.curve)
-    if not traverse.fell and not lead.has_formed(outcome.curve, tolerance=tolerance, room=room):
+    left = 0.0 if traverse.fell else lead.growth_left(outcome.curve)
+    upper += left
+    if not traverse.fell and not (left <= room and lead.has_formed(outcome.curve, tolerance)):
         reached = f"{number(answers[-1])} at {lead.reached(outcome.curve):.4g} m"
         if lead.may_lock and is_self_locking(lead.scene):
             message = f"self-locking: the drive takes {reached}, and joint forces balance any multiple of it; {what}"

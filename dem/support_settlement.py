@@ -72,11 +72,7 @@ class StaticSettlement(StaticLead):
         """Settlement [m] at the end of a curve ``(n, 2)``."""
         return float(abs(curve[-1, 0]))
 
-    def growth_left(self, curve: Array) -> float:
-        """No growth: a share that still changes is told as such."""
-        return 0.0
-
-    def has_formed(self, curve: Array, *, tolerance: float, room: float) -> bool:
+    def has_formed(self, curve: Array, tolerance: float) -> bool:
         """Whether the share no longer changes at the end of a curve ``(n, 2)``."""
         return formed(curve, tolerance)
 

@@ -130,22 +130,13 @@ class Lead(ABC):
         """Force [N] by which the answer may grow beyond the end of the path, as far as that can be told."""
         return 0.0
 
-    def has_formed(self, traverse: Traverse, bracket: tuple[float, float], tolerance: float, room: float) -> bool:
-        """Whether a mechanism has formed at the end of a path: its answer no longer changes by more than a tolerance.
+    def has_formed(self, traverse: Traverse, tolerance: float, *, still: float) -> bool:
+        """Whether the answer changes by less than a relative tolerance at the end of a path.
 
-        Parameters
-        ----------
-        traverse
-            Traverse of the path.
-        bracket
-            Bracket of its answer, without `growth_left`.
-        tolerance
-            Relative change that is allowed.
-        room
-            Part of the tolerance that `growth_left` may take.
+        `still` is the change that the speed may have caused.
         """
-        scale, grown = max(traverse.answer, self.least), late_growth(self.onward(traverse.curve))
-        return grown <= tolerance * scale and self.growth_left(traverse) <= room * scale
+        grown = late_growth(self.onward(traverse.curve))
+        return grown <= tolerance * max(traverse.answer, self.least)
 
     def unfinished(self, curve: Array) -> tuple[str, bool]:
         """Note on a wall whose mechanism has not formed, and whether its answer can only become smaller."""

@@ -247,14 +247,15 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         if not _fall_alike(traverses[-2], traverse, tolerance):
             return replace(outcome, message=f"no answer: another speed changes whether or where it falls; {what}")
         traverse.fall = min(rest for rest, _ in places), max(fall for _, fall in places)
-    least, most = bracket = _bracket(traverses)
+    least, most = _bracket(traverses)
     fell = traverse.verdict == "collapse"
     if not fell and lead.has_come_free(traverse.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
-    spread = _spread(lead, traverses)
-    outcome = replace(outcome, lower=least, upper=most + lead.growth_left(traverse))
-    room = tolerance - spread if spread <= tolerance else tolerance
-    if not fell and not lead.has_formed(traverse, bracket, tolerance, room):
+    spread, left = _spread(lead, traverses), lead.growth_left(traverse)
+    outcome = replace(outcome, lower=least, upper=most + left)
+    room = (tolerance - spread if spread <= tolerance else tolerance) * max(traverse.answer, lead.least)
+    has_formed = left <= room and lead.has_formed(traverse, tolerance, still=traverse.answer - least)
+    if not fell and not has_formed:
         still, falls = lead.unfinished(outcome.curve)
         still = f"{still} at the displacement asked for, {at}"
         if traverse.answer > lead.most:

@@ -54,9 +54,9 @@ class SupportSettlement(Lead):
         """Settlement [m] at the end of a curve ``(n, 2)``."""
         return float(abs(curve[-1, 0]))
 
-    def has_formed(self, traverse: Traverse, bracket: tuple[float, float], tolerance: float, room: float) -> bool:
+    def has_formed(self, traverse: Traverse, tolerance: float, *, still: float) -> bool:
         """Whether the share no longer changes at the end of the path."""
-        return formed(traverse.curve, tolerance, still=traverse.answer - bracket[0])
+        return formed(traverse.curve, tolerance, still=still)
 
     def unfinished(self, curve: Array) -> tuple[str, bool]:
         """Note on a share that still changes, and whether it can only become smaller."""

@@ -1,6 +1,5 @@
 """Ties, driven beams and moving supports in the two dynamic models, against statics."""
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -19,18 +18,14 @@ from meshing import wall_mesh
 from runningbond import Wall
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.dynamics.path_curve import formed, goes_both_ways, growth_left, late_growth, other_way, shedding
-from runningbond.dynamics.peaks import Peaks
 from runningbond.dynamics.support_settlement import windows_of_stage
 from runningbond.dynamics.ties import tie_rows
-from runningbond.dynamics.toes import Toes
-from runningbond.joints import joint_stiffness, wall_points
+from runningbond.joints import joint_stiffness
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import (
-    Array,
     BlockMaterial,
     JointMaterial,
     Load,
@@ -232,128 +227,10 @@ def test_peak_of_snapping_joint_does_not_depend_on_drive_length(way: float) -> N
     assert (np.diff(outcome.curve[:, 0]) >= 0).all()
 
 
-@pytest.mark.parametrize("steps", [200.0, np.nextafter(200.0, 0.0), np.nextafter(200.0, np.inf)])
-def test_number_of_windows_is_robust_to_rounding_of_time_step(steps: float) -> None:
-    """The step of the joint above varies with the processor; two windows per row would miss 0.2 % of its strength."""
-    state = State.at_rest(rigid_system(under_beam("free", {"displacement": [1e-3, 0]})))
-    assert Peaks(state, steps).windows == 4
-
-
-def seen_by_peaks(force: Array, inertia: Array | None = None, *, row: int = 200, most: float = np.inf) -> Peaks:
-    """Peaks of mean forces in the windows of rows of so many steps; states have the numbers of windows, from 1."""
-    state = State.at_rest(rigid_system(block()))
-    peaks = Peaks(state, row, most)
-    inertia = np.zeros(len(force)) if inertia is None else inertia
-    for k, (one, other) in enumerate(zip(force.tolist(), inertia.tolist(), strict=True)):
-        at = 1 + k // peaks.windows
-        peaks.see(one, other, row // peaks.windows, replace(state.copy(), steps=k + 1), at)
-    return peaks
-
-
-@pytest.mark.parametrize(
-    ("slope", "shorter", "resolved"),
-    [(0.0032, False, True), (0.0035, True, True), (0.0065, True, True), (0.0075, True, False)],
-)
-def test_peak_of_growing_force_and_what_it_misses_add_up_to_the_force_at_the_end(
-    slope: float, shorter: bool, resolved: bool
-) -> None:
-    """1 at the end after growing by `slope` a row, of which means over whole rows show 3/4 more than half rows do.
-
-    The median of three windows is 1.5 windows behind. Half as long windows must add no more than 0.25 %.
-    """
-    row = (np.arange(40) + 0.5) / 4
-    peak, between, unseen, enough = seen_by_peaks(1 + slope * (row - 10)).resolved()
-    assert (between, enough) == (shorter, resolved)
-    assert peak.force == pytest.approx(1 - slope * (0.75 if shorter else 1.5), rel=1e-12)
-    assert peak.force + unseen == pytest.approx(1.0, rel=1e-12)
-
-
-def test_peak_is_the_median_of_three_windows_with_the_state_of_the_middle_one() -> None:
-    """Half rows with 7, 9 and 8 follow each other; single ones with 20 fluctuate. Rows have 8, 4.5 and 1."""
-    force, inertia = np.ones(20), np.zeros(20)
-    force[12:15], inertia[12:15] = (7.0, 9.0, 8.0), (1.0, -3.0, 2.0)
-    force[[4, 18]] = 20.0
-    peaks = seen_by_peaks(np.repeat(force, 2), np.repeat(inertia, 2))
-    peak, between, _, resolved = peaks.resolved()
-    assert (between, resolved, peaks.longest.force) == (True, False, 4.5)
-    assert (peak.force, peak.state.steps, peak.row, peak.inertia) == (8.0, 28, 8, 3.0)
-
-
-def test_windows_in_which_a_force_fluctuates_do_not_raise_its_peak() -> None:
-    """Two rows of 3 whose outer halves are 6: no three half rows in succession have a median above 0."""
-    force = np.concatenate([np.zeros(4), [6.0, 0.0, 0.0, 6.0], np.zeros(4)])
-    rows = np.concatenate([force, [3.0, 3.0], np.zeros(4)])
-    peak, between, unseen, resolved = seen_by_peaks(rows, row=100).resolved()
-    assert (peak.force, between, unseen, resolved) == (3.0, False, 0.0, True)
-
-
-@pytest.mark.parametrize(("row", "resolved"), [(20, True), (98, True), (100, False)])
-def test_windows_of_fewer_than_fifty_steps_are_whole_rows(row: int, resolved: bool) -> None:
-    """Half rows show more of a force that doubles from one to the next, if they are long enough to be counted."""
-    peaks = seen_by_peaks(np.array([2.0**k for k in range(12)]), row=row)
-    assert peaks.longest.force == pytest.approx(1.5 * 2**8)  # the last row but one
-    assert peaks.resolved()[1:] == (False, 0.0 if resolved else pytest.approx(2 * (2**10 - 1.5 * 2**8)), resolved)
-
-
-def test_number_of_windows_may_be_limited() -> None:
-    assert seen_by_peaks(np.ones(4), row=2000).windows == 32
-    assert seen_by_peaks(np.ones(4), row=2000, most=4).windows == 4
-
-
 @pytest.mark.parametrize("steps", [2000.0, np.nextafter(2000.0, 0.0), np.nextafter(2000.0, np.inf)])
 def test_number_of_settlement_stage_windows_is_robust_to_rounding(steps: float) -> None:
     """If the support changes its speed three times in a row instead of four, the bracket is half as wide, or twice."""
     assert windows_of_stage(steps) == 4
-
-
-@pytest.mark.parametrize(("width", "height", "courses"), [(0.1, 0.1, 2), (0.1, 0.3, 4), (0.3, 0.1, 14), (0.7, 0.7, 14)])
-def test_toes_of_symmetric_wall_are_mirror_images(width: float, height: float, courses: int) -> None:
-    """Some joint points lie exactly at a quarter of the length; those of the joint at mid height are in both toes."""
-    size = {"block_width": width, "block_height": height, "length": 4 * width, "height": courses * height}
-    beam = {"height": 0.1, "condition": "free", "force": [0, -N], "drive": {"displacement": [1e-3, 0]}}
-    scene = panel(wall=size | {"thickness": 0.1}, joint__mortar=MORTAR, load__live=None, beam=beam)
-    points = wall_points(scene)
-    wall_toes = Toes(scene, points)
-    toes: list[Array] = []
-    for towards in (False, True):
-        whole = np.zeros(len(points))
-        broken = [wall_toes.broken(whole, whole, crushed, right=towards) > 0 for crushed in np.eye(len(points))]
-        toes.append(points.position[broken] / [4 * width, courses * height])
-    left, right = (sorted(map(tuple, np.round(places, 6).tolist())) for places in (toes[0], toes[1] * [-1, 1] + [1, 0]))
-    assert left == right
-    all_of_it = points.position / [4 * width, courses * height] <= [0.25 + 1e-6, 0.5 + 1e-6]
-    assert len(left) == all_of_it.all(axis=1).sum()
-
-
-@pytest.mark.parametrize("at", [(0.0, 0.0), (-3.0, 2.0), (5.0, -7.0)])
-def test_toes_of_column_are_its_lower_outer_quarters_wherever_it_stands(at: tuple[float, float]) -> None:
-    """Two blocks of 1 m: only the lower one's base and the joint between them, at mid height, have points of toes."""
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) + at
-    dry = JointMaterial(0.6, elasticity=Mortar(**MORTAR))
-    blocks = [corners + (0.0, k) for k in range(3)]
-    scene = build_scene("column", blocks, thickness=0.12, block=OAK, joint=dry, load=Load())
-    points = wall_points(scene)
-    wall_toes, whole = Toes(scene, points), np.zeros(len(points))
-    x, y = (points.position - at).T
-    for right, outer in ((False, x <= 0.25 + 1e-9), (True, x >= 0.75 - 1e-9)):
-        broken = [wall_toes.broken(whole, whole, crushed, right=right) > 0 for crushed in np.eye(len(points))]
-        assert broken == (outer & (y <= 1.5)).tolist()
-
-
-def test_toe_is_broken_by_open_cracks_through_its_blocks_or_by_crushing() -> None:
-    """The larger one counts; joints between blocks open without harm, and a crack that still holds is none."""
-    inner_joint = {"friction": 0.6, "cohesion": 1e6, "mortar": MORTAR}
-    scene = panel(wall__length=0.96, wall__height=0.48, joint__mortar=MORTAR, inner_joint=inner_joint)
-    points = wall_points(scene)
-    toes, one = Toes(scene, points), np.ones(len(points))
-    for side, right in (((points.position[:, 0] < 0.48) * one, False), ((points.position[:, 0] > 0.48) * one, True)):
-        assert toes.broken(1e-3 * side, one, 0.0 * one, right=right) == 1e-3
-        assert toes.broken(1e-3 * side, one, 0.0 * one, right=not right) == 0.0
-        assert toes.broken(1e-3 * side, 0.99 * one, 0.0 * one, right=right) == 0.0
-        assert toes.broken(1e-3 * side * ~toes.is_inner, one, 0.0 * one, right=right) == 0.0
-        assert toes.broken(-1e-3 * side, one, 0.0 * one, right=right) == 0.0
-        assert toes.broken(1e-3 * side, one, 5e-4 * side, right=right) == 1e-3
-        assert toes.broken(1e-3 * side, one, 2e-3 * side, right=right) == 2e-3
 
 
 def test_force_that_accelerates_wall_is_not_its_strength() -> None:
@@ -749,115 +626,6 @@ def test_settlement_frames_report_share_on_support(model: Any) -> None:
     assert loads == pytest.approx(outcome.curve[:, 1])
 
 
-@pytest.mark.parametrize(
-    ("force", "expected"),
-    [([1.0, 2.0, 3.0], False), ([1.0, 3.0, 2.0], True), ([2.0, 3.0, 3.001], True), ([0.0, 0.0, 0.0], True)],
-)
-def test_mechanism_has_formed_if_force_no_longer_grows(force: list[float], expected: bool) -> None:
-    x: Array = np.array([0.0, 0.5, 1.0])
-    assert (growth_left(np.column_stack([x, force])) <= 0.01 * max(force)) == expected
-
-
-X = np.linspace(0.0, 1.0, 401)
-
-
-@pytest.mark.parametrize(
-    ("force", "left"),
-    [
-        (3.0 * X, 3.0),
-        (1.0 - 0.001 / (X + 0.001), 0.00111),
-        (np.minimum(X, 0.85), 0.0),  # a plateau that has just begun
-        (np.minimum(X, 0.85) + 1e-12 * X, 1e-12),
-        (np.minimum(X, 0.5) + 1e-3 * np.sin(1e4 * X), 0.0),
-        (X * (1.5 - X), 0.0),
-        (np.interp(X, [0, 0.94, 1], [0, 1, 0.9]), 0.0),  # a peak that is just passed
-        (np.interp(X, [0, 0.9, 0.96, 1], [0, 0.5, 1, 0.8]), 0.0),  # and the last part still rises on average
-        (np.where(X < 0.3, 4.0 * X, 0.5 + X), 1.0),  # a peak, a loss, and as stiff as before
-        (np.where(X < 0.3, 4.0 * X, 0.1 + X), 0.91),  # below the peak: 1.19 on the way, 1.1 at its end, then 2.1
-    ],
-    ids=["line", "hyperbola", "flat", "nearly flat", "noisy", "peak", *["late peak"] * 2, *["hardens again"] * 2],
-)
-def test_growth_beyond_a_path_follows_its_end(force: Array, left: float) -> None:
-    """On a path twice as long; a line doubles, c / x has a little more than c / x left; a path may go to and fro."""
-    curve = np.column_stack([X, force])
-    assert growth_left(curve) == pytest.approx(left, rel=0.01, abs=1e-12)
-    loop = np.concatenate([curve[:200], curve[200::-1] * (1, -1) - (0, 1), curve])
-    assert growth_left(loop) == pytest.approx(growth_left(curve), rel=1e-9)
-
-
-@pytest.mark.parametrize(("errors", "grows"), [(2.5, False), (3.5, True)])
-def test_slope_within_three_standard_errors_is_none(errors: float, grows: bool) -> None:
-    """40 forces that alternate by ±1e-3 about a line: the standard error of its slope is 1e-3 √(12 / 40) per part."""
-    share = np.linspace(0.0, 1.0, 40)
-    scatter = 1e-3 * np.tile([1.0, -1.0, -1.0, 1.0], 10)
-    force = 1 + errors * 1e-3 * np.sqrt(12 / 40) * share + scatter
-    curve = np.column_stack([np.append(0.0, 0.9 + 0.1 * share), np.append(0.0, force)])
-    assert (growth_left(curve) > 0) == grows
-
-
-@pytest.mark.parametrize("again", [1.0, np.nextafter(1.0, 2.0), 1 + 1e-12])
-def test_repeated_amplitude_does_not_change_the_growth_left(again: float) -> None:
-    """The wall is pushed back to the same place, except for rounding, and has lost half its strength."""
-    cycle = np.concatenate([X, X[-2::-1], X[1:-1], [again]])
-    force = np.concatenate([3 * X, -3 * X[-2::-1], 1.5 * X[1:]])
-    assert growth_left(np.column_stack([cycle, force])) == pytest.approx(3.0, rel=1e-6)
-
-
-@pytest.mark.parametrize(("force", "grown"), [(X, 0.1), (np.minimum(X, 0.8), 0.0), (X * (1.2 - X), 0.0)])
-def test_late_growth_is_that_over_the_last_tenth(force: Array, grown: float) -> None:
-    """A line grows by a tenth; on a plateau and past its peak a force does not grow."""
-    assert late_growth(np.column_stack([X, force])) == pytest.approx(grown, abs=0.003)
-    assert late_growth(np.column_stack([X, force])) >= 0
-
-
-@pytest.mark.parametrize(
-    ("late", "tolerance", "still", "expected"),
-    [
-        *[(0.03, 0.05, 0.0, True), (0.03, 0.01, 0.0, False), (0.03, 0.01, 0.04, True), (0.03, 0.01, 0.021, True)],
-        *[(0.03, 0.01, 0.019, False), (0.07, 0.3, 0.0, False), (0.1, 0.3, 0.0, False), (0.0, 0.0, 0.0, True)],
-    ],
-)
-def test_share_that_still_changes_is_of_no_mechanism(
-    late: float, tolerance: float, still: float, expected: bool
-) -> None:
-    """It falls by 1, of which `late` in the last tenth; no tolerance is above half a tenth. Motion may change it."""
-    share = np.interp(X, [0, 0.9, 1], [1, late, 0])
-    assert formed(np.column_stack([X, share]), tolerance, still=still) == expected
-    back = np.column_stack([np.concatenate([X, X[-2::-1]]), np.concatenate([share[::-1], share[1:]])])
-    assert formed(back, tolerance, still=still) == expected
-
-
-@pytest.mark.parametrize(
-    ("at", "falls", "change"),
-    [
-        ((0.5, 0.3, 0.2), True, "sheds load"),
-        ((0.5, 0.2, 0.3), False, "takes up load"),  # at the end, whatever it was before
-        ((0.5, 0.3, 0.3), True, "sheds load"),  # the whole leg, if the end does not change
-        ((0.3, 0.5, 0.5), False, "takes up load"),
-        ((-0.3, -0.4, -0.5), True, "takes up load"),  # pulled along the motion, and more and more
-        ((-0.5, -0.4, -0.3), False, "sheds load"),
-    ],
-)
-def test_change_of_share_is_that_at_the_end_of_its_last_leg(
-    at: tuple[float, float, float], falls: bool, change: str
-) -> None:
-    """The share at the start of a leg, at nine tenths of it, and at its end; the leg may follow one the other way."""
-    share = np.interp(X, [0, 0.9, 1], at)
-    assert shedding(np.column_stack([X, share])) == (falls, change)
-    back = np.column_stack([np.concatenate([X, X[-2::-1]]), np.concatenate([share[::-1], share[1:]])])
-    assert shedding(back) == (falls, change)
-
-
-@pytest.mark.parametrize(
-    ("goals", "least", "note"),
-    [([1, -1], -3.0, f"the other way it takes {number(3.0)}"), ([1, 0], -3.0, ""), ([1, -1], 0.0, "")],
-)
-def test_largest_force_of_the_other_way_is_told_if_there_is_one(goals: list[float], least: float, note: str) -> None:
-    """5 one way and 3 the other; unloading against friction, or a push back without resistance, is not told."""
-    curve = np.array([[0.0, 0.0], [1.0, 5.0], [goals[1], least]])
-    assert other_way(np.array(goals, dtype=float), curve) == note
-
-
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic])
 @pytest.mark.parametrize("moved", [2.3e-5, 2.4e-5])
 def test_mechanism_that_has_just_formed_is_one(model: Any, moved: float) -> None:
@@ -865,19 +633,6 @@ def test_mechanism_that_has_just_formed_is_one(model: Any, moved: float) -> None
     beam = {"height": 0.1, "condition": "fixed-height", "force": [0, -5e3], "drive": {"displacement": [moved, 0.0]}}
     wall = panel(wall__length=0.48, wall__height=0.36, joint__mortar=MORTAR, load__live=None, beam=beam)
     brackets(model(wall, 0.01), 3000.0, 1e-3)
-
-
-@pytest.mark.parametrize(
-    ("place", "force"),
-    [
-        ([0, 0.5, 0.6, 1], [0, 1, 0.6, 0.999]),
-        ([0, 0.5, 0.6, 1], [0, 1, 0.6, 1.001]),
-        ([0, 0.85, 0.9, 1], [0, 1, 0.5, 0.99]),
-    ],
-)
-def test_wall_that_hardens_again_to_about_its_peak_has_formed_no_mechanism(place: Any, force: Any) -> None:
-    """It goes on as steeply on a path twice as long, by as much as it has borne or more."""
-    assert growth_left(np.column_stack([X, np.interp(X, place, force)])) > 0.99
 
 
 def elastic(model: Any, tolerance: float) -> Outcome:
@@ -900,19 +655,6 @@ def test_elastic_wall_has_no_collapse_load_at_any_tolerance(model: Any) -> None:
     outcome = elastic(model, 0.12)
     assert outcome.status == "undecided"
     assert "still hardens" in outcome.message
-
-
-@pytest.mark.parametrize(
-    ("goals", "expected"),
-    [
-        *[([1.0], False), ([0.0, 1.0], False), ([0.0, -1.0, -2.0], False), ([0.0, 1.0, -1.0], True)],
-        *[([1.0, 0.0], False), ([-2.0, 0.1, -4.0], False), ([0.0], False), ([], False)],
-        *[([1.0, -0.04], False), ([1.0, -0.06], True)],  # a return may go beyond its start by a twentieth
-    ],
-)
-def test_one_sided_drive_path_does_not_go_both_ways(goals: list[float], expected: bool) -> None:
-    """One-sided cycles were once taken for two-sided ones, because friction resists unloading too."""
-    assert goes_both_ways(np.array(goals)) == expected
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
