@@ -28,8 +28,7 @@ def moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) 
         scene = scene.with_rigid_blocks()
     gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
     moved, load = outcome.curve.T
-    low, high = scene.blocks.extent(scene.wall)
-    rests = np.abs(moved[load == outcome.lower]) / (high - low).min()
+    rests = np.abs(moved[load == outcome.lower]) / _smaller_side(scene)
     moved = rests[0] if len(rests) else 0.0
     height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
     soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"
@@ -41,11 +40,16 @@ def led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
     """Note for a wall with prescribed displacements of its support or beam that are not small."""
     if model.kind != "history" or model.is_finite or not scene.is_led or not len(outcome.curve):
         return ""
-    low, high = scene.blocks.extent(scene.wall)
-    share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())
+    share = float(np.abs(outcome.curve[:, 0]).max() / _smaller_side(scene))
     led = f"{'the support' if scene.settlement else 'the beam'} goes by {two_digits(100 * share)} %"
     follows = "; finite ones follow it" if "displacements" in model.parameters and _may_go_far(scene) else ""
     return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR_MOTION else ""
+
+
+def _smaller_side(scene: Scene) -> float:
+    """Length or height [m] of the wall without supports and beam."""
+    low, high = scene.blocks.extent(scene.masonry)
+    return float((high - low).min())
 
 
 def _may_go_far(scene: Scene) -> bool:
