@@ -229,9 +229,11 @@ class Push(Lead):
         lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows).tolist()
         most = power = speed * self._load
         for parts in _parts(peaks.windows):
-            before = state.motion.copy()
+            before, full_way = state.motion.copy(), 0.0
             for window, (part, length) in enumerate(zip(parts, lengths, strict=True), start=1):
+                since = state.time
                 multiplier = run.drive(state, part * power, length, given=given)
+                full_way += part * speed * (state.time - since)
                 peaks.see(multiplier, 0.0, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                 if window == peaks.windows // 2:
                     middle = state.copy()
@@ -247,7 +249,7 @@ class Push(Lead):
                 break
             if abs(self.moved(state)) >= self.distance or traverse.rows[-1].force > self.most:
                 break
-            power = min(most, power / max(went / (speed * run.dt * np.dot(parts, lengths)), 1 / POWER_GROWTH))
+            power = min(most, power / max(went / full_way, 1 / POWER_GROWTH))
         else:
             traverse.verdict = "undecided"
         self.conclude(traverse, peaks, seen)

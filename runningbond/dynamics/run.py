@@ -144,6 +144,12 @@ class Run:
         self._plastic = rows.index(PLASTIC_SLIP) if PLASTIC_SLIP in rows else -1
         self._work = (*np.zeros((2, len(self.system.mass))), *(np.zeros(interface.law.points) for _ in range(4)))
 
+    def interface_of(self, state: State) -> Interface:
+        """The interface on the contacts of a state, which may be another state than that of the last steps."""
+        if self._update is None or self._contacts is (contacts := contacts_of(state)):
+            return self.interface
+        return self._update.interface_on(contacts)
+
     def _return_to(self, state: State) -> None:
         """Continue with the interface on the contacts of a state, which may be another state than before."""
         if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
@@ -279,9 +285,11 @@ class Run:
         """A copy of a state, one step ahead under a load ``(nd,)`` [N], except for its count of steps and its works."""
         if self.local:
             raise ValueError("local damping would remember a step that is not taken")
+        interface, contacts, ahead = self.interface, self._contacts, state.copy()
         self._return_to(state)
-        ahead = state.copy()
         self._take(CONTROLS.index("held"), ahead, load, self.system.live, 0.0, 1, (0, math.inf, ahead.supplied))
+        if self._contacts is not contacts:
+            self._take_up(interface, contacts)
         return ahead
 
     def held_late(self, state: State) -> "Run":
@@ -356,13 +364,14 @@ class Run:
     def forces(self, state: State) -> tuple[Array, Array]:
         """Normal and tangential force at each point ``(np,)`` [N]; the state is not changed."""
         _, _, normal, tangential = self.tractions(state)
-        return normal * self.interface.area, tangential * self.interface.area
+        area = self.interface_of(state).area
+        return normal * area, tangential * area
 
     def tractions(self, state: State) -> tuple[Array, Array, Array, Array]:
-        """Opening and slip [m] and tractions [Pa] of the points; the state is not changed."""
-        self._return_to(state)
-        law = self.interface.law
-        opening, slip = self.interface.jumps(self.system.unrestrained(state.motion))
+        """Opening and slip [m] and tractions [Pa] of the points; neither the state nor the time step is changed."""
+        interface = self.interface_of(state)
+        law = interface.law
+        opening, slip = interface.jumps(self.system.unrestrained(state.motion))
         normal, tangential = np.zeros((2, law.points))
         # Without viscosity, which is negligible at rest: it would need the rate of a step that is not taken.
         law.kernel(opening, slip, law.parameters, state.history.copy(), 0.0, normal, tangential)
@@ -374,9 +383,9 @@ class Run:
         At finite displacements these are points of the undeformed wall's joints, without `new_contacts`.
         """
         jumps, tractions = np.split(np.array(self.tractions(state)), 2)
-        law, search = self.interface.law, self.system.contacts
-        broken = law.damage(state.history), law.crushed(state.history)
-        values = np.vstack([jumps, self.interface.area * tractions, *broken])
+        interface, search = self.interface_of(state), self.system.contacts
+        broken = interface.law.damage(state.history), interface.law.crushed(state.history)
+        values = np.vstack([jumps, interface.area * tractions, *broken])
         return values if search is None else search.at_joints(contacts_of(state), values)
 
     def pulls_at_joints(self, state: State) -> Array:
@@ -426,10 +435,11 @@ class Run:
         of an elastic system under a constant load then have no residual.
         """
         opening, _, normal, tangential = self.tractions(state)
+        interface = self.interface_of(state)
         ahead = state if load is None else self._ahead(state, load)
         mean, change = (ahead.velocity + state.velocity) / 2, (ahead.velocity - state.velocity) / 2
         damped = ((state.damped + ahead.damped) / 2)[np.isfinite(self.system.mass)]
-        system, law, area, ties = self.system, self.interface.law, self.interface.area, self.system.ties
+        system, law, area, ties = self.system, interface.law, interface.area, self.system.ties
         return Ledger(
             external=state.external,
             kinetic=system.kinetic_energy(mean) - system.kinetic_energy(change),

@@ -266,6 +266,25 @@ def test_copied_state_keeps_its_own_contacts() -> None:
     assert run.ledger(state) == run.ledger(kept)
 
 
+def test_reading_an_earlier_state_leaves_a_run_as_it_is() -> None:
+    """A recorded push once had another time step, and another path, than one that nobody observed."""
+    run = Run(finite_system(panel(wall__height=0.24, wall__length=0.72, joint__mortar=STIFF)), local=0.0)
+    state = State.at_rest(run.system)
+    run.hold(state, 0.8, 3000)
+    earlier, forces, joints = state.copy(), np.array(run.forces(state)), run.at_joints(state)
+    balance = run.ledger(state, run.system.dead)
+    run.hold(state, 0.8, 4000)
+    interface, step, end = run.interface, run.dt, run.ledger(state, run.system.dead)
+    assert (np.array(run.forces(earlier)) == forces).all()
+    assert (run.at_joints(earlier) == joints).all()
+    assert run.ledger(earlier, run.system.dead) == balance
+    run.resultants(earlier, 0.8)
+    run.new_contacts(earlier)
+    assert run.interface is interface
+    assert run.dt == step
+    assert run.ledger(state, run.system.dead) == end
+
+
 def test_a_state_without_contacts_is_refused() -> None:
     scene = panel(joint__mortar=STIFF)
     run = Run(finite_system(scene))
