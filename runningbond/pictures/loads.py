@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,20 @@ MAX_LABELS = 4
 """Number of forces of one load, or of line loads in a chain, up to which each one is labelled."""
 
 CHAIN_COSINE = 0.5
-"""Cosine of the largest angle between two line loads with a common end that count as one chain."""
+"""Cosine of the largest angle between two line loads with a common end, and between their forces, in one chain."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Row:
+    """The arrows of a line load under a bar, or along the line if the force is parallel to it."""
+
+    tails: Array  # (n, 2) ends of the arrows [m],
+    tips: Array  # (n, 2)
+    strip: shapely.Geometry  # the area that they cover
+    away: Array  # (2,) directions away from the wall: that of the label,
+    outward: Array  # and that across the line, in which the row may be moved
+    is_shear: bool
+    outside: bool  # on a face of the wall, and not in its middle
 
 
 class LoadDrawing:
@@ -69,15 +83,35 @@ class LoadDrawing:
     def draw(self) -> None:
         """Draw all loads: along lines first, then at points, and on the whole wall last."""
         load = self.scene.load
+        for live, given in ((False, load.dead), (True, load.live)):
+            lines = [each for each in given if isinstance(each, LineLoad)]
+            for chain in self._chains(lines):
+                self._draw_chain([lines[k] for k in chain], live=live)
         loads = [(action, False) for action in load.dead] + [(action, True) for action in load.live]
-        order: tuple[Any, ...] = (LineLoad, (PointLoad, BeamLoad), Moment)
-        ranks = [next((k for k, kinds in enumerate(order) if isinstance(one, kinds)), 3) for one, _ in loads]
+        order: tuple[Any, ...] = ((PointLoad, BeamLoad), Moment)
+        ranks = [next((k for k, kinds in enumerate(order) if isinstance(one, kinds)), 2) for one, _ in loads]
         for k in np.argsort(ranks, kind="stable"):
             self._draw(*loads[k])
         for (live, x, y), texts in self.pushes.items():
             self._push(np.array([x, y]), "\n+ ".join(texts), *_look(live))
         if load.gravity != EARTH and any(load.gravity):
             draw_gravity(self.sketch, self.low, self.high, load.gravity)
+
+    def _chains(self, lines: Sequence[LineLoad]) -> list[list[int]]:
+        """Line loads that are drawn together, chain by chain (`_chains`); loads along the same line are drawn apart."""
+        reach, chains = 1e-6 * self.scene.size, list[list[int]]()
+        of = _chains(lines, reach) if lines else np.zeros(0, dtype=np.int64)
+        segments = [shapely.LineString([each.start, each.end]) for each in lines]
+        for number in dict.fromkeys(of.tolist()):
+            layers = list[list[int]]()
+            for k in np.flatnonzero(of == number).tolist():
+                free = (layer for layer in layers if not any(_share(segments[k], segments[m], reach) for m in layer))
+                layer = next(free, None)
+                if layer is None:
+                    layers.append(layer := [])
+                layer.append(k)
+            chains += layers
+        return chains
 
     def _sizes_along(self, loads: Sequence[Action], *, live: bool) -> dict[int, str]:
         """Label of each line load by its `id`; a long chain of line loads gets one label with the range of its sizes.
@@ -87,9 +121,8 @@ class LoadDrawing:
         lines = [each for each in loads if isinstance(each, LineLoad)]
         sizes = [math.hypot(*each.force) for each in lines]
         said = [times_lambda(readable(size, "N/m"), live=live) for size in sizes]
-        chains = _chains(lines, 1e-6 * self.scene.size) if lines else np.zeros(0, dtype=np.int64)
-        for chain in np.unique(chains):
-            own = np.flatnonzero(chains == chain)
+        for chain in self._chains(lines):
+            own = np.array(chain)
             if len(own) <= MAX_LABELS or all(self._has_room(lines[k], said[k]) for k in own):
                 continue
             middles = np.array([np.add(lines[k].start, lines[k].end) / 2 for k in own])
@@ -109,7 +142,7 @@ class LoadDrawing:
         colour, name = _look(live)
         match action:
             case LineLoad():
-                self._line(action, live, colour, name)
+                pass  # drawn with its chain
             case PointLoad():
                 self._point(np.array(action.at), action.blocks(self.scene), action.force, live, colour, name)
             case BeamLoad():
@@ -210,8 +243,24 @@ class LoadDrawing:
         found = self.scene.blocks.containing(at)
         return bool(self.scene.wall[found].any())
 
-    def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
-        """Draw a row of arrows under a bar; outside the wall it is moved outwards until it is clear of other rows."""
+    def _draw_chain(self, loads: Sequence[LineLoad], *, live: bool) -> None:
+        """Draw rows of arrows that adjoin; outside the wall they are moved outwards together, clear of other rows."""
+        rows, far = [self._row(load, live=live) for load in loads], 0
+        colour, name = _look(live)
+        step = 0.5 * self.a
+
+        def strips() -> list[shapely.Geometry]:
+            return [affinity.translate(row.strip, *(far * step * row.outward)) for row in rows if row.outside]
+
+        while any(shapely.area(strip & other) > 1e-9 * strip.area for strip in strips() for other in self.strips):
+            far += 1
+        for load, row in zip(loads, rows, strict=True):
+            moved = far * step * row.outward if row.outside else np.zeros(2)
+            self._draw_row(row.tails + moved, row.tips + moved, row, colour, name, self.sizes[live][id(load)])
+        self.strips += strips() + [row.strip for row in rows if not row.outside]
+
+    def _row(self, load: LineLoad, *, live: bool) -> "_Row":
+        """The arrows of a line load, where they are drawn if nothing is in their way."""
         a, direction = self.a, unit_vector(np.array(load.force))
         block, parts = load.parts(self.scene)
         run = np.subtract(load.end, load.start)
@@ -224,33 +273,35 @@ class LoadDrawing:
         tips = np.array([self.shape.drawn_at(*end) for end in along_it])
         middle = np.add(load.start, load.end) / 2
         is_shear = abs(along @ direction) > 0.97
-        away = np.array([-along[1], along[0]]) if is_shear else -direction
+        across = np.array([-along[1], along[0]])
+        away = across if is_shear else -direction
         beyond, before = self._inside(middle + 0.5 * a * away), self._inside(middle - 0.5 * a * away)
         if beyond and not before:
             away = -away
-        within = beyond and before
-        if is_shear and not within:
+        outside = not (beyond and before)
+        if is_shear and outside:
             tips = tips + 0.6 * a * away
         elif not is_shear and away @ direction > 0:  # it pulls
             tips = tips + 1.5 * share * a * direction
-        both = np.concatenate([tips - (0.9 if is_shear else 1.5) * share * a * direction, tips])
+        tails = tips - (0.9 if is_shear else 1.5) * share * a * direction
+        both = np.concatenate([tails, tips])
         air = 0.35 * a * away if is_shear else np.zeros(2)
         inner = 1e-3 * (np.mean(both @ along) - both @ along)[:, None] * along  # so that adjoining rows do not overlap
         strip = shapely.MultiPoint(np.concatenate([both - air, both + air]) + np.tile(inner, (2, 1))).convex_hull
-        step = 0.5 * a * away
-        while not within and any(shapely.area(strip & other) > 1e-9 * strip.area for other in self.strips):
-            both, strip = both + step, affinity.translate(strip, *step)
-        self.strips.append(strip)
-        tails, tips = both[:n], both[n:]
+        outward = math.copysign(1.0, across @ away) * across
+        return _Row(tails, tips, strip, away, outward, is_shear, outside)
+
+    def _draw_row(self, tails: Array, tips: Array, row: "_Row", colour: str, name: str, text: str) -> None:
+        both = np.concatenate([tails, tips])
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
         for tail, tip in zip(tails, tips, strict=True):
             self.sketch.arrow(name, [tail, tip], colour)
-        if not is_shear:
+        if not row.is_shear:
             self.sketch.line(name, tails, color=colour, lw=1.2, zorder=6)
         ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
-        outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ away))
-        spots = [Spot(outer, _side(away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
-        if text := self.sizes[live][id(load)]:
+        outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ row.away))
+        spots = [Spot(outer, _side(row.away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
+        if text:
             self.sketch.label(text, spots, colour)
 
     def _beam(self, load: BeamLoad, live: bool) -> None:
@@ -274,7 +325,12 @@ class LoadDrawing:
             self.sketch.line("beam", arm, lw=1.8)
             if not self.shape.displacement.any():  # a moved beam is no longer at this height
                 self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
-        self._force(self.shape.drawn_at(tip, number), direction, text, colour, name, both=both)
+        drawn = self.shape.drawn_at(tip, number)
+        if (
+            beam.force_line == "fixed" and not live
+        ):  # the force keeps its line, along which its point moves with the beam
+            drawn = tip + (drawn - tip) @ direction * direction
+        self._force(drawn, direction, text, colour, name, both=both)
 
     def _height(self, at: Array, height: float, side: float) -> None:
         """Draw the height of a point above the base of the wall as a dimension line."""
@@ -357,12 +413,22 @@ def _largest(loads: Sequence[Action]) -> float:
 
 
 def _chains(loads: Sequence[LineLoad], reach: float) -> Indices:
-    """Chain number of each line load, ``(n,)``: loads in a chain adjoin end to end without a sharp turn."""
+    """Chain number of each line load, ``(n,)``: loads in a chain adjoin end to end without a sharp turn.
+
+    Neither the line nor the force turns sharply.
+    """
     ends = np.array([(each.start, each.end) for each in loads]).reshape(-1, 2, 2)
     away = (ends[:, ::-1] - ends) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None, None]
     apart = np.abs(ends[:, None, :, None] - ends[None, :, None, :]).max(axis=4)
     straight = np.einsum("aik,bjk->abij", away, away) < -CHAIN_COSINE
-    return components(np.argwhere(((apart <= reach) & straight).any(axis=(2, 3))), len(loads))
+    force = np.array([unit_vector(np.array(each.force)) for each in loads])
+    adjoin = ((apart <= reach) & straight).any(axis=(2, 3)) & (force @ force.T > CHAIN_COSINE)
+    return components(np.argwhere(adjoin), len(loads))
+
+
+def _share(one: shapely.Geometry, other: shapely.Geometry, reach: float) -> bool:
+    """Whether two lines run along each other for more than a length [m]."""
+    return bool(shapely.length(one & other) > reach)
 
 
 def _side(direction: Array) -> tuple[float, float]:

@@ -296,6 +296,51 @@ def test_pressures_with_enough_space_keep_their_labels() -> None:
     assert len(labels(figure)) == 9
 
 
+@pytest.mark.parametrize("lean", [0.0, 0.1, 0.2])
+def test_loads_along_a_steep_face_are_drawn_in_one_chain_beside_it(lean: float) -> None:
+    """Vertical loads on the two stones of a face that leans by up to 6 degrees; they do not push each other away."""
+    outlines = [[[lean * y, y], [0.8, y], [0.8, y + 0.5], [lean * (y + 0.5), y + 0.5]] for y in (0.0, 0.5)]
+    dead = [
+        {"kind": "line", "from": [lean * y, y], "to": [lean * (y + 0.5), y + 0.5], "force": [0, -2e3]}
+        for y in (0.0, 0.5)
+    ]
+    content = wall(1.0, 1.0) | {"load": {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": dead}}
+    content["wall"] = {"outlines": outlines, "thickness": 1.0}
+    figure = figure_of(scene_from_dict(content))
+    runs = np.array([arrow._path_original.vertices for arrow in named(figure, "dead load", FancyArrowPatch)])
+    middles = runs.mean(axis=1)
+    aside = middles @ np.array([1.0, -lean]) / np.hypot(1.0, lean)
+    assert aside == pytest.approx(np.full(len(runs), aside[0]), abs=1e-6)
+    assert aside[0] < 0
+    assert middles[:, 1].max() < 1.1
+
+
+def test_oblique_live_loads_beside_dead_loads_stay_at_their_height() -> None:
+    """Wind on a face that carries weights along it, too: moved aside, together, and not along its own direction."""
+    ends = list(pairwise(np.linspace(0.0, 1.0, 5).tolist()))
+    dead = [{"kind": "line", "from": [0, a], "to": [0, b], "force": [0, -1e3]} for a, b in ends]
+    live = [{"kind": "line", "from": [0, a], "to": [0, b], "force": [2e3, -1e3]} for a, b in ends]
+    figure = figure_of(scene_from_dict(wall(1.0, 1.0) | {"load": {"gravity": 9.81, "live": live, "dead": dead}}))
+    tips = np.array([arrow._path_original.vertices[1] for arrow in named(figure, "live load", FancyArrowPatch)])
+    weights = np.array([arrow._path_original.vertices for arrow in named(figure, "dead load", FancyArrowPatch)])
+    assert tips[:, 1].min() == pytest.approx(0.0, abs=1e-9)
+    assert tips[:, 1].max() == pytest.approx(1.0, abs=1e-9)
+    assert tips[:, 0] == pytest.approx(np.full(len(tips), tips[0, 0]), abs=1e-9)
+    assert tips[:, 0].max() < weights[..., 0].min()
+    assert np.unique(np.round(weights[..., 0], 9)).size == 1
+
+
+def test_two_loads_along_one_line_are_drawn_apart() -> None:
+    """Floor and plaster on the top of two stones: two rows above each other, each straight."""
+    dead = [line(1.0, a, a + 1, [0, -force]) for force in (1e3, 1e3) for a in (0, 1)]
+    load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": dead}
+    figure = figure_of(scene_from_dict(wall(2.0, 1.0) | {"load": load}))
+    tips = [arrow._path_original.vertices[1] for arrow in named(figure, "dead load", FancyArrowPatch)]
+    levels = Counter(round(float(y), 6) for _, y in tips)
+    assert len(levels) == 2
+    assert len(set(levels.values())) == 1
+
+
 def test_earth_pressure_on_arch_is_drawn_at_arch_with_one_label() -> None:
     """One load per stone, of its own size and direction: inclined rows do not push each other away from the arch."""
     ray = np.exp(1j * np.linspace(np.pi, 0, 14))
@@ -570,6 +615,24 @@ def test_loads_on_mechanism_start_at_displaced_face(load: dict[str, Any]) -> Non
         tail, tip = arrow._path_original.vertices
         assert tail[0] == pytest.approx(end, abs=1e-9)
         assert tip[0] > tail[0]
+
+
+@pytest.mark.parametrize(("force_line", "aside"), [("moving", True), ("fixed", False)])
+def test_force_on_a_moved_beam_keeps_its_line_if_that_is_fixed(force_line: str, aside: bool) -> None:
+    """On the moved beam's edge, in the middle of the beam or on the line through its middle as built."""
+    beam = {"height": 0.25, "force": [0.0, -1e4], "force_line": force_line, "drive": {"displacement": [0.01, 0.0]}}
+    scene = scene_from_dict(wall(2.0, 1.0, beam=beam, load={"gravity": 9.81}))
+    assert scene.beam is not None
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.beam.block] = [0.5, 0.0, 0.0]
+    figure = figure_of(scene, Outcome("", "limit", "collapse", 1e5, motion=motion))
+    (moved,) = named(figure, "beam", Patch)
+    corners = moved.get_xy()[:-1]
+    (arrow,) = named(figure, "dead load", FancyArrowPatch)
+    x, y = arrow._path_original.vertices[1]
+    assert y == pytest.approx(corners[:, 1].max(), abs=1e-9)
+    assert corners[:, 0].mean() > 1.05
+    assert x == pytest.approx(corners[:, 0].mean() if aside else 1.0, abs=1e-9)
 
 
 def test_drive_arm_of_mechanism_stays_on_beam_without_dimension() -> None:
