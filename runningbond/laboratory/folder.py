@@ -182,8 +182,7 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     curve = read_curve(there[CURVE]) if CURVE in there else np.zeros((0, 2))
     if len(curve) and np.nansum(curve[:, 0] * curve[:, 1]) <= 0:
         raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")
-    if SCENE not in there:
-        _check_displacements(name, curve, row.optional("H0"))
+    _check_displacements(name, curve, row.optional("H0"))
     if CRACKS in there:
         _check_picture(there[CRACKS])
     modes = _words(row.text("from test report: failure type"))

@@ -28,6 +28,12 @@ OPTIONS: dict[str, bool | int | float | str] = {
     "primal_simplex_bound_perturbation_multiplier": 0.0,  # otherwise intermediate vertices violate bounds
 }
 
+LEAST_SECONDS, SECONDS = 5.0, 1e-5
+"""Time after which a program is given up: at least so long, and so long times the square of its number of columns.
+
+That is a hundred times as long as programs take: HiGHS 1.16 may never end on one, without counting any iterations.
+"""
+
 LARGE_COEFFICIENT, FINE_TOLERANCE = 1e4, 1e-9
 """Coefficient above which this tolerance replaces HiGHS's 1e-7, to resolve a small block's forces on a huge one."""
 
@@ -68,6 +74,7 @@ class Simplex:
             self._highs.setOptionValue("primal_feasibility_tolerance", FINE_TOLERANCE)
             self._highs.setOptionValue("dual_feasibility_tolerance", FINE_TOLERANCE)
         self._highs.passModel(program)
+        self._seconds = max(LEAST_SECONDS, SECONDS * self._size**2)
 
     @property
     def vertex(self) -> highspy.HighsBasis:
@@ -86,7 +93,7 @@ class Simplex:
         """Return status, x ``(n,)`` and multipliers of equations ``(m,)`` of a program.
 
         After `pivots` iterations the status is ``budget``; with the primal method x is then a feasible vertex, but not
-        optimal.
+        optimal. A program that does not end is ``numerical``, and the next one starts from no vertex.
         """
         highs = self._highs
         highs.setOptionValue("solver", "ipm" if method == INTERIOR else "simplex")
@@ -95,7 +102,11 @@ class Simplex:
         highs.setOptionValue("simplex_iteration_limit", highspy.kHighsIInf if pivots is None else pivots)
         highs.changeColsBounds(self._size, self._every, low, high)
         highs.changeColsCost(self._size, self._every, cost)
+        highs.setOptionValue("time_limit", highs.getRunTime() + self._seconds)  # HiGHS adds up the times of all runs
         highs.run()
+        if highs.getModelStatus() == highspy.HighsModelStatus.kTimeLimit:
+            highs.clearSolver()
+            return "numerical", np.zeros(0), np.zeros(0)
         status = _STATUS.get(highs.getModelStatus(), "numerical")
         if (
             status == "budget"

@@ -543,6 +543,10 @@ def test_displacements_in_another_unit_are_refused(factor: float, said: str, tmp
     curve = "displacement_mm,force_kN\n0,0\n" + f"{20 * factor:g},61\n"
     with pytest.raises(SceneError, match=rf"WS\.175\.csv: displacement_mm: must be in mm; .* is {re.escape(said)}"):
         read_folder(write_folder(tmp_path, GRANITE, curve=curve))
+    write_toml(_tables(one(tmp_path / "other", GRANITE), ALL), tmp_path / "WS.175.toml")
+    with pytest.raises(SceneError, match=rf"WS\.175\.csv: displacement_mm: must be in mm; .* is {re.escape(said)}"):
+        read_folder(tmp_path)
+    (tmp_path / "WS.175.toml").unlink()
     assert len(read_folder(write_folder(tmp_path, GRANITE.replace(",1325,", ",,"), curve=curve))) == 1
 
 

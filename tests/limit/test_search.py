@@ -259,6 +259,26 @@ def test_search_reports_progress() -> None:
     assert lines[-1].startswith(f"9 starts, {(outcome.steps or 0) - 1} linear programs")
 
 
+def test_program_that_does_not_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """HiGHS 1.16 stays in one program of this wall for ever, without counting iterations; the search goes on."""
+    monkeypatch.setattr("runningbond.limit.simplex.LEAST_SECONDS", 0.5)
+    live = {"kind": "point", "at": [0.15, 0.09], "force": [-346.752, -84.2796]}
+    wall = panel(
+        wall={"thickness": 0.461, "block_width": 0.6, "block_height": 0.06, "length": 1.2, "height": 0.36},
+        joint={"friction": 1.116, "cohesion": 9770.0},
+        joints={"lime": {"friction": 0.43, "cohesion": 1190.0}},
+        assign=[{"joint": "lime", "box": [[-9.0, 0.18], [10.2, 9.36]]}],
+        beam={"height": 0.1, "condition": "level"},
+        load={"gravity": 9.81, "live": live},
+    )
+    outcome = limit_nonassociated(wall)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < 1.7
+    assert outcome.upper <= (limit(wall).multiplier or 0.0) * (1 + 1e-6)
+
+
 def test_warm_started_programs_reach_cold_optimum() -> None:
     """Both ends of the loads on one mechanism, after other programs, against interior point and crossover."""
     system = equilibrium(published_scene("wall-w3"))
