@@ -9,9 +9,13 @@ LOWER = 0.02
 """Part of a wall's height by which its actuator may be lower because sizes are rounded."""
 
 
+SAME_PEAK = 0.05
+"""Relative difference up to which the largest forces of a wall's record and of its table are the same."""
+
+
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    return [*_unknown_modes(wall), *_missing_cycles(wall), *_low_force(wall), *_offset(wall)]
+    return [*_unknown_modes(wall), *_missing_cycles(wall), *_low_force(wall), *_offset(wall), *_other_peak(wall)]
 
 
 def _unknown_modes(wall: MeasuredWall) -> list[str]:
@@ -49,3 +53,13 @@ def _offset(wall: MeasuredWall) -> list[str]:
     is_offset |= abs(y) > NOISE * peak and x * np.sign(y) <= 0
     start = f"{1e3 * x:.3g} mm under {y / 1e3:.3g} kN"
     return [f"the record starts at {start}, and is read as it is; both must count from rest"] if is_offset else []
+
+
+def _other_peak(wall: MeasuredWall) -> list[str]:
+    """A record whose largest force is not that of the table: each is compared with a part of a prediction."""
+    if not len(wall.curve) or not wall.peaks:
+        return []
+    largest, told = float(np.nanmax(np.abs(wall.curve[:, 1]))), max(wall.peaks)
+    what = f"the record's largest force is {largest / 1e3:.4g} kN, and the table's {told / 1e3:.4g} kN"
+    uses = "strength is compared with the table, stiffness and displacements with the record"
+    return [f"{what}; {uses}"] if abs(largest - told) > SAME_PEAK * told else []

@@ -537,6 +537,15 @@ def test_actuator_below_the_top_of_the_wall_is_noted(tmp_path: Path) -> None:
     assert 175e3 / 2 < (limit(scene).multiplier or 0.0) < (175e3 + weight) / 2
 
 
+@pytest.mark.parametrize(("factor", "noted"), [(1.0, False), (1.04, False), (1.06, True), (0.94, True)])
+def test_record_with_another_strength_than_the_table_is_noted(factor: float, noted: bool, tmp_path: Path) -> None:
+    (table,) = one(tmp_path, GRANITE).peaks
+    curve = f"displacement_mm,force_kN\n0,0\n10,{factor * table / 1e3:.6g}\n20,1\n"
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE, curve=curve))
+    told = [f"the record's largest force is {factor * table / 1e3:.4g} kN, and the table's {table / 1e3:.4g} kN"]
+    assert [note.partition(";")[0] for note in notes_on(wall)] == (told if noted else [])
+
+
 @pytest.mark.parametrize(("factor", "said"), [(1e-3, "0.02, 1.5e-05 of H0 = 1325 mm"), (100, "2e+03, 1.5 of H0")])
 def test_displacements_in_another_unit_are_refused(factor: float, said: str, tmp_path: Path) -> None:
     """Metres under a head in millimetres were once predicted as a push of micrometres."""
