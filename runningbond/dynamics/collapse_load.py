@@ -251,7 +251,10 @@ def _judge(
     upper = result.upper + overshoot
     outcome = replace(outcome, lower=result.lower, upper=upper, motion=motion)
     # The motion under the suddenly applied dead load does not count; afterwards that load may do almost no work.
-    lost = run.unaccounted(result.fallen, since=result.rests[0][1])
+    try:
+        lost = _unaccounted(run, result, result.fallen)
+    except KeyboardInterrupt:
+        return replace(outcome, message="interrupted: the bracket so far")
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if excluded:
@@ -273,6 +276,14 @@ def _judge(
         message=f"largest load at rest and smallest in collapse{beyond}, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
+
+
+def _unaccounted(run: Run, result: LoadSteps, fallen: State) -> float:
+    """Missing energy of a fall, counted again if blocks that chatter may have made it too large (`Fall`)."""
+    loaded = result.rests[0][1]
+    lost = run.unaccounted(fallen, since=loaded)
+    counted = result.fall.unaccounted(loaded) if lost > UNACCOUNTED and result.fall is not None else None
+    return lost if counted is None else counted
 
 
 def _never_fallen(

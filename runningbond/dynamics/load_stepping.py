@@ -8,6 +8,7 @@ from runningbond.scene import Array
 
 from .collapse import CALM, CollapseDetector, Criteria, Verdict, hold_load, settle
 from .dead_load import put_on_dead_load
+from .fall import Fall
 from .growth import FAST_FRACTION, Growth
 from .run import Observer, Run, no_observer
 from .state import State
@@ -49,6 +50,7 @@ class LoadSteps:
     borne: State | None = None  # state at rest under `lower`; None if the wall did not even carry its dead load
     fallen: State | None = None  # state in the collapse under `upper`, or under the dead load
     tried_from: float | None = None  # multiplier at rest from which the load last grew to `upper`
+    fall: Fall | None = None  # how it collapsed under `upper`
     # (nd,) motions on the way to that collapse, the latest first: half-way to it, then each rest
     fall_starts: list[Array] = field(default_factory=list)
     # every state at rest and its multiplier, in the order of loads
@@ -63,16 +65,18 @@ class LoadSteps:
         """Width of the bracket, infinite until a load makes the wall fall."""
         return np.inf if self.upper is None else self.upper - (self.lower or 0.0)
 
-    def add(self, trial: float, state: State, verdict: Verdict, halfway: Array | None) -> None:
+    def add(
+        self, trial: float, state: State, verdict: Verdict, halfway: Array | None, fall: Fall | None = None
+    ) -> None:
         """Record a load and the state of the wall under it."""
         self.verdict = verdict
         if self.verdict == "stable":
             if self.upper is not None and trial >= self.upper:  # on a path with more rests than that of the collapse
-                self.upper, self.fallen = None, None
+                self.upper, self.fallen, self.fall = None, None, None
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
         elif self.verdict == "collapse":
-            self.upper, self.fallen = trial, state
+            self.upper, self.fallen, self.fall = trial, state, fall
             rests = [rest.motion for _, rest in reversed(self.rests)]
             self.fall_starts = rests if halfway is None else [halfway, *rests]
         if trial == self.upper:
@@ -201,11 +205,11 @@ class _Search:
             growth = 1.0 if trial > DOUBLED_BEYOND * self.first and not system.weightless else GROWTH
             (lower, borne), before = result.rests[-1], grows.steps
             trial, state = grows.reach(trial, borne, lower, (trial - lower) / max(self.first, growth * trial))
-            held = state.steps
-            verdict, halfway = hold_load(self.run, state, trial, self._criteria(borne), self.observe)
-            taken = grows.steps - before + state.steps - held
+            fall = Fall(self.run, state.copy(), trial, self._criteria(borne))
+            verdict, halfway = hold_load(self.run, state, trial, fall.criteria, self.observe)
+            taken = grows.steps - before + state.steps - fall.start.steps
             result.steps += taken
-            result.add(trial, state, verdict, halfway)
+            result.add(trial, state, verdict, halfway, fall)
             undecided_steps += taken if verdict == "undecided" else 0
             if undecided_steps > UNDECIDED_BUDGETS * self.criteria.budget:
                 return

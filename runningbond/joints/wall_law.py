@@ -48,6 +48,11 @@ def with_impacts(scene: Scene) -> Scene:
     return replace(scene, joint_materials=tuple(replace(each, law=IMPACTS) for each in scene.joint_materials))
 
 
+def counted_in_impacts(law: KernelLaw) -> KernelLaw | None:
+    """The same law over the same points with the ledger of `with_impacts`; None for other laws than Coulomb's."""
+    return replace(law, law=IMPACTS) if law.law is COULOMB else None
+
+
 def row_of_joint(scene: Scene) -> Indices:
     """Material by which kernels group joints ``(nj,)``, or 0 for all if many joints have a material of their own.
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from dem.static import FALLEN
@@ -23,9 +24,9 @@ SINKS = {"kind": "settlement", "box": [[-1.0, -1.0], [9.0, 0.01]], "by": [0.0, -
 DRIVEN = {"height": 0.1, "condition": "free", "force": [0, -1000.0], "drive": {"displacement": [0.01, 0.0]}}
 
 
-def collapsed(curve: list[list[float]], lower: float = 0.3, **given: Any) -> Outcome:
-    """A collapse between `lower` and 0.35, on a path."""
-    return Outcome("panel", "dem-static", "collapse", 0.32, **{"lower": lower, "upper": 0.35, "curve": curve} | given)
+def collapsed(curve: list[list[float]]) -> Outcome:
+    """A collapse between 0.3 and 0.35, on a path."""
+    return Outcome("panel", "dem-static", "collapse", 0.32, 0.3, 0.35, curve=np.array(curve))
 
 
 def settling(**changes: Any) -> Scene:
@@ -66,7 +67,7 @@ def test_motion_is_told_of_walls_that_collapse_on_a_path_under_a_load() -> None:
     assert moves(STATIC, settling(), far, None) == ""
     assert moves(STATIC, driven(), far, None) == ""
     assert moves(STATIC, panel(joint=STIFF), replace(far, status="undecided", multiplier=None), None) == ""
-    falls = replace(far, multiplier=0.0, lower=0.0, upper=0.0, curve=[[0.1, 0.0]])
+    falls = replace(far, multiplier=0.0, lower=0.0, upper=0.0, curve=np.array([[0.1, 0.0]]))
     assert moves(STATIC, panel(joint=STIFF), falls, None) == ""
 
 
@@ -111,7 +112,7 @@ def test_prescribed_motion_is_told_beyond_small_displacements(scene: Scene, who:
 def test_prescribed_motion_is_told_of_walls_that_are_led_along_a_path() -> None:
     far = collapsed([[0.0, 0.0], [0.1, 0.3]])
     assert led_far(STATIC, panel(joint=STIFF), far) == ""
-    assert led_far(STATIC, settling(), replace(far, curve=[])) == ""
+    assert led_far(STATIC, settling(), replace(far, curve=np.zeros((0, 2)))) == ""
 
 
 def test_finite_displacements_are_offered_to_walls_that_they_support() -> None:
