@@ -112,8 +112,10 @@ def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: 
         for before_turn, share in pairwise(shares.tolist()):
             ramp(growing, state, before_turn, share, max(1, GROWTH_TIMES * rest // (len(shares) - 1)))
             _tighten(run, state, (share - before_turn) * system.ties.slack)
-        # In the ledger the work done so far, by the growing load, is the work of the dead load.
-        state.turned += state.external - float(system.dead @ state.motion)
+        # The growing load did about half of the work of the constant one, which the ledger takes as done and absorbed.
+        missing = float(system.dead @ state.motion) - state.external
+        state.external += missing
+        state.absorbed += missing
         verdict = settle(run, state, 0.0, criteria, observe)
     return UnderDeadLoad(state, verdict, rest, before + state.steps)
 

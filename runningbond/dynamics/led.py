@@ -224,14 +224,16 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, travers
     supports = Supports(scene, points, run.system.owner)
     _, force, carried, tie, works, beam = map(np.array, zip(*traverse.rows, strict=True))
     columns = (*supports.columns, *WORKS, AT_REST)
+    rests = np.full(len(force), not traverse.moves)
+    rests[0] = True  # under the dead load
     if run.system.contacts is not None:
         held = carried[:, supports.block]
         held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
-        path = np.column_stack([-held.reshape(len(held), -1), tie, works, np.full(len(held), not traverse.moves)])
+        path = np.column_stack([-held.reshape(len(held), -1), tie, works, rests])
     else:
         loads = force if traverse.moves else np.zeros(len(force))
         path = supports.path(carried, tie, loads, works)["path"]
-        path[:, -1] = not traverse.moves
+        path[:, -1] = rests
     if beam.size:
         path, columns = np.column_stack([path[:, :-1], beam, path[:, -1]]), (*columns[:-1], *BEAM, AT_REST)
     return replace(outcome, curve=traverse.curve, path=path, path_columns=columns)

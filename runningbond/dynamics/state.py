@@ -38,7 +38,7 @@ class State:
     supplied: Array = field(default_factory=lambda: np.zeros(1))
     stretch: Array = field(default_factory=lambda: np.zeros(0))  # (nt,) plastic elongation of the ties [m]
     # on earlier contacts: work of friction, cracking and crushing [J]; work of their viscosity and of the damping of
-    # modes held since, and work that preloads of ties did not do because they came slowly [J]
+    # modes held since, and work that the dead load and preloads of ties did not do because they came slowly [J]
     friction: float = 0.0
     absorbed: float = 0.0
 

@@ -611,6 +611,9 @@ def test_recorder_keeps_frames_of_last_drive() -> None:
     assert (np.diff(moved) >= 0).all()
     assert len(moved) == 21
     assert moved[-1] == pytest.approx(0.001, rel=1e-6)
+    rests = outcome.curve_columns()["at rest"]
+    assert rests[0] == 1  # under the dead load, before the drive
+    assert not rests[1:].any()
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -116,6 +116,9 @@ def test_ground_reactions_balance_push_and_weight() -> None:
     assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # instant against row mean
     assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=0.01)
     assert up.mean() == pytest.approx(weight, rel=0.01)
+    rests = outcome.curve_columns()["at rest"]
+    assert rests[0] == 1
+    assert not rests[1:].any()
 
 
 def test_push_does_not_depend_on_load_unit(monkeypatch: pytest.MonkeyPatch) -> None:
