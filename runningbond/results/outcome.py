@@ -53,7 +53,8 @@ class Outcome:
     path : (n, k) float
         Further quantities of the states of `curve`, with names and units in `path_columns`: reactions of all supports,
         forces of ties (`Supports`), work of the dead and of the live load since the wall was built, and whether the
-        wall is at rest (1), or falls or moves with what drives it (0). Without a curve at most one row, the collapse. Unknown values are NaN.
+        wall is at rest (1), or falls or moves with what drives it (0). Without a curve at most one row, the collapse.
+        Unknown values are NaN.
     path_columns
         Names of the columns of `path`.
     moments : (n nb, 3) float
