@@ -116,6 +116,13 @@ def test_beds_of_expanded_bricks_are_straight() -> None:
         assert np.abs(np.diff(ends[:, :, 1], axis=1)).max() < 1e-8
 
 
+def test_stones_end_exactly_on_a_ground_at_zero() -> None:
+    """They once ended at -7.5e-9 m, by the grid on which they are expanded, and columns of results had names with it."""
+    stones = [*crooked(3), box(0.0, 1.0, 1.2, 1.0 + np.sqrt(0.02))]
+    expanded, _ = expand(shrunk(stones, 0.004), [box(-1.0, -0.5, 2.0, 0.0)], 0.012)
+    assert np.vstack(expanded)[:, 1].min() == pytest.approx(0.0, abs=1e-15)
+
+
 def test_stones_do_not_expand_into_gaps_of_the_ground() -> None:
     grounds = [box(-1.0, -0.5, 0.195, 0.0), box(0.205, -0.5, 1.4, 0.0)]
     outlines = expand([box(0.0, 0.01, 0.195, 0.1), box(0.205, 0.01, 0.4, 0.1)], grounds, 0.012)[0]

@@ -56,12 +56,13 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
         stones that lie in others or in the ground, would enclose others, or fall into pieces.
     """
     corners = np.vstack([*stones])
-    origin = corners.mean(axis=0)  # rounding errors of coordinates grow with the distance from zero
+    grid = GRID * width
+    # Rounding errors of coordinates grow with the distance from zero; zero, where the ground often lies, is on the grid.
+    origin = np.round(corners.mean(axis=0) / grid) * grid
     drawn = np.array([shapely.Polygon(stone - origin) for stone in stones])
     size = float(np.ptp(corners, axis=0).max())
     names = [f"block {k} at {place(stone.mean(axis=0), size)}" for k, stone in enumerate(stones)]
     _check(drawn, names, width)
-    grid = GRID * width
     ground = shapely.union_all([shapely.Polygon(outline - origin) for outline in grounds], grid_size=grid)
     whole = _mortared(drawn, ground, width)
     cells = _cells(_apart(drawn, grid), whole, width)
