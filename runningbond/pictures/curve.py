@@ -49,7 +49,7 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     levels = [x for x in (outcome.lower, outcome.multiplier, outcome.upper) if x is not None] or [load.max()]
     axes.annotate(
         f"{answer}  {bracket}".strip(),
-        (0.02, min(levels) if scene.settlement else max(levels)),
+        (0.02, min([*levels, *load]) if scene.settlement else max(levels)),
         (0, -4 if scene.settlement else 4),  # under a settlement, the curve descends to the level
         va="top" if scene.settlement else "baseline",
         xycoords=("axes fraction", "data"),
@@ -60,12 +60,13 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
         path_effects=[withStroke(linewidth=2.0, foreground="white")],
     )
     _draw_states(axes, scene, outcome)
-    if scene.is_led or _rests(outcome).any():  # else it is pushed far, and its fall must stay visible
+    if scene.is_led or not _is_in_motion(scene, outcome):  # else it is pushed far, and its fall must stay visible
         _bend(axes, moved, load)
     bottom = min(0.0, 1.12 * load.min())
     top = max(-0.05 * bottom, 1.12 * max(load.max(), *levels)) or 1.0
     if scene.settlement:
-        bottom = min(bottom, min(levels) - LABEL_HEIGHT * (top - min(levels)))
+        least = min([*levels, *load])
+        bottom = min(bottom, least - LABEL_HEIGHT * (top - least))
     axes.set_ylim(bottom, top)
     displacement, load_axis = curve_quantities(scene)
     axes.set_xlabel(f"{displacement} [mm]", fontsize=TYPE + 1)
@@ -79,10 +80,8 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     """Draw states at rest and in a fall; under ground motions each state is a separate run, so no line joins them."""
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
-    rests = _rests(outcome)
-    is_led = not rests.any()  # in motion all the way
-    rests |= is_led
-    held, way = ("stands", ".") if scene.history else ("at rest", "-" if is_led else ".-")
+    rests = _rests(outcome) | _is_in_motion(scene, outcome)
+    held, way = ("stands", ".") if scene.history else ("at rest", "-" if _is_in_motion(scene, outcome) else ".-")
     axes.plot(moved[rests], load[rests], way, color=CURVE, lw=1.2, ms=4, label=held)
     if not rests.all():
         last = np.flatnonzero(~rests)[0]
@@ -95,6 +94,12 @@ def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 def _rests(outcome: Outcome) -> Mask:
     """Whether the wall is at rest at each row of a curve."""
     return np.asarray(outcome.curve_columns().get(AT_REST, np.ones(len(outcome.curve))) == 1)
+
+
+def _is_in_motion(scene: Scene, outcome: Outcome) -> bool:
+    """Whether the wall moves with what drives it all the way; a curve of loads ends with the only row of a fall."""
+    rests = _rests(outcome)
+    return scene.history is None and len(rests) > 2 and not rests[1:].any()
 
 
 def _bend(axes: "Axes", moved: Array, load: Array) -> None:

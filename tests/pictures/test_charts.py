@@ -37,10 +37,10 @@ def test_cyclic_curve_has_linear_axes_with_whole_curve() -> None:
     assert axes.get_ylim()[0] < -1.05
 
 
-@pytest.mark.parametrize("share", [0.13, 0.0, -0.17])
-def test_settlement_label_hides_neither_curve_nor_axis(share: float) -> None:
-    """It lies below the bracket, on whose lower bound the curve's states may lie, and above the axis."""
-    loads = np.array([0.25, share, share, share])
+@pytest.mark.parametrize(("share", "least"), [(0.13, 0.13), (0.0, 0.0), (-0.17, -0.17), (0.13, 0.12), (0.13, 0.07)])
+def test_settlement_label_hides_neither_curve_nor_axis(share: float, least: float) -> None:
+    """It lies below bracket and curve, whose states may lie on the lower bound or below it, and above the axis."""
+    loads = np.array([0.25, least, least, share])
     outcome = Outcome("wall", "dem-static", "collapse", share, share, share + 0.01)
     outcome = replace(outcome, curve=np.column_stack([[0.0, 1e-4, 1e-3, 1e-2], loads]))
     figure = curve_figure(scene_from_dict(settling_portal()), outcome)
@@ -48,8 +48,20 @@ def test_settlement_label_hides_neither_curve_nor_axis(share: float) -> None:
     axes = figure.axes[0]
     label = axes.texts[0].get_window_extent()
     radius = axes.lines[-1].get_markersize() / 2 * figure.dpi / 72
-    assert label.y1 < axes.transData.transform((0.0, share))[1] - radius
+    assert label.y1 < axes.transData.transform((0.0, least))[1] - radius
     assert label.y0 > axes.get_window_extent().y0
+
+
+@pytest.mark.parametrize(("rests", "named"), [([1, 0, 0, 0], []), ([1, 1, 1, 0], ["at rest", "falls"])])
+def test_wall_that_is_driven_does_not_fall_all_the_way(rests: list[int], named: list[str]) -> None:
+    """It rests under the dead load and then moves with the drive: one line, not a fall from the first row on."""
+    moved, load = np.array([0.0, 1e-3, 2e-3, 3e-3]), np.array([0.0, 1.0, 1.1, 1.1])
+    outcome = Outcome("wall", "dem-dynamic", "collapse", 1.1, curve=np.column_stack([moved, load]))
+    outcome = replace(outcome, path=np.array(rests, dtype=float)[:, None], path_columns=("at rest",))
+    axes = curve_figure(panel(), outcome).axes[0]
+    legend = axes.get_legend()
+    assert ([] if legend is None else [text.get_text() for text in legend.get_texts()]) == named
+    assert any(np.size(line.get_xdata()) == 4 for line in axes.lines) == (not named)
 
 
 @pytest.mark.parametrize(("status", "inside"), [("collapse", "red"), ("undecided", "white")])

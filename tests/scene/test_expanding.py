@@ -117,7 +117,7 @@ def test_beds_of_expanded_bricks_are_straight() -> None:
 
 
 def test_stones_end_exactly_on_a_ground_at_zero() -> None:
-    """They once ended at -7.5e-9 m, by the grid on which they are expanded, and columns of results had names with it."""
+    """They once ended at -7.5e-9 m, by the grid on which they are expanded, and columns of results were named so."""
     stones = [*crooked(3), box(0.0, 1.0, 1.2, 1.0 + np.sqrt(0.02))]
     expanded, _ = expand(shrunk(stones, 0.004), [box(-1.0, -0.5, 2.0, 0.0)], 0.012)
     assert np.vstack(expanded)[:, 1].min() == pytest.approx(0.0, abs=1e-15)

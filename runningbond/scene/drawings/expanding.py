@@ -57,7 +57,7 @@ def expand(stones: Sequence[Array], grounds: Sequence[Array], width: float) -> t
     """
     corners = np.vstack([*stones])
     grid = GRID * width
-    # Rounding errors of coordinates grow with the distance from zero; zero, where the ground often lies, is on the grid.
+    # Errors of coordinates by rounding grow with their size. Zero, where the ground often lies, is on the grid.
     origin = np.round(corners.mean(axis=0) / grid) * grid
     drawn = np.array([shapely.Polygon(stone - origin) for stone in stones])
     size = float(np.ptp(corners, axis=0).max())
