@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,40 +24,21 @@ from runningbond.scene import (
     Tilt,
 )
 from runningbond.scene.actions import unit_vector
-from runningbond.scene.arrays import components
 from runningbond.scene.history import STANDARD_GRAVITY
 
 from .captions import is_force
 from .deformed_shape import DeformedShape
 from .gravity import draw_gravity, draw_tilt
 from .labels import Spot, text_size
+from .line_load_rows import Row, chains_of, is_in_wall, row_of
 from .quantities import millimetres, minus, readable, span, times_lambda
 from .sketch import Sketch
 from .style import DARK, DEAD, MOTION, TYPE
 
 EARTH = (0.0, -9.81)
 
-MIN_ARROW = 0.4
-"""Arrow length of a vanishing line load relative to that of the largest line load; linear in between."""
-
 MAX_LABELS = 4
 """Number of forces of one load, or of line loads in a chain, up to which each one is labelled."""
-
-CHAIN_COSINE = 0.5
-"""Cosine of the largest angle between two line loads with a common end, and between their forces, in one chain."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Row:
-    """The arrows of a line load under a bar, or along the line if the force is parallel to it."""
-
-    tails: Array  # (n, 2) ends of the arrows [m],
-    tips: Array  # (n, 2)
-    strip: shapely.Geometry  # the area that they cover
-    away: Array  # (2,) directions away from the wall: that of the label,
-    outward: Array  # and that across the line, in which the row may be moved
-    is_shear: bool
-    outside: bool  # on a face of the wall, and not in its middle
 
 
 class LoadDrawing:
@@ -69,6 +49,7 @@ class LoadDrawing:
         self.low, self.high = self.scene.blocks.extent(self.scene.wall)
         ground = np.flatnonzero(~self.scene.wall)
         self.ground = shapely.union_all([shapely.Polygon(self.scene.blocks.polygon(int(k))) for k in ground])
+        self.reach = 1e-6 * self.scene.size
         self.rows: list[Array] = []
         self.strips: list[shapely.Geometry] = []
         self.alone: list[Array] = []
@@ -85,7 +66,7 @@ class LoadDrawing:
         load = self.scene.load
         for live, given in ((False, load.dead), (True, load.live)):
             lines = [each for each in given if isinstance(each, LineLoad)]
-            for chain in self._chains(lines):
+            for chain in chains_of(lines, self.reach):
                 self._draw_chain([lines[k] for k in chain], live=live)
         loads = [(action, False) for action in load.dead] + [(action, True) for action in load.live]
         order: tuple[Any, ...] = ((PointLoad, BeamLoad), Moment)
@@ -97,22 +78,6 @@ class LoadDrawing:
         if load.gravity != EARTH and any(load.gravity):
             draw_gravity(self.sketch, self.low, self.high, load.gravity)
 
-    def _chains(self, lines: Sequence[LineLoad]) -> list[list[int]]:
-        """Line loads that are drawn together, chain by chain (`_chains`); loads along the same line are drawn apart."""
-        reach, chains = 1e-6 * self.scene.size, list[list[int]]()
-        of = _chains(lines, reach) if lines else np.zeros(0, dtype=np.int64)
-        segments = [shapely.LineString([each.start, each.end]) for each in lines]
-        for number in dict.fromkeys(of.tolist()):
-            layers = list[list[int]]()
-            for k in np.flatnonzero(of == number).tolist():
-                free = (layer for layer in layers if not any(_share(segments[k], segments[m], reach) for m in layer))
-                layer = next(free, None)
-                if layer is None:
-                    layers.append(layer := [])
-                layer.append(k)
-            chains += layers
-        return chains
-
     def _sizes_along(self, loads: Sequence[Action], *, live: bool) -> dict[int, str]:
         """Label of each line load by its `id`; a long chain of line loads gets one label with the range of its sizes.
 
@@ -121,7 +86,7 @@ class LoadDrawing:
         lines = [each for each in loads if isinstance(each, LineLoad)]
         sizes = [math.hypot(*each.force) for each in lines]
         said = [times_lambda(readable(size, "N/m"), live=live) for size in sizes]
-        for chain in self._chains(lines):
+        for chain in chains_of(lines, self.reach):
             own = np.array(chain)
             if len(own) <= MAX_LABELS or all(self._has_room(lines[k], said[k]) for k in own):
                 continue
@@ -197,7 +162,7 @@ class LoadDrawing:
         size = self._size(force, live=live)
         direction = unit_vector(np.array(force))
         within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # all may be outside at a corner
-        ahead, behind = (self._inside(within + side * 0.5 * self.a * direction) for side in (1, -1))
+        ahead, behind = (is_in_wall(self.scene, within + side * 0.5 * self.a * direction) for side in (1, -1))
         self._force(self.shape.drawn_at(at, block), direction, size, colour, name, pulls=behind and not ahead)
 
     def _size(self, force: tuple[float, float], *, live: bool) -> str:
@@ -238,14 +203,9 @@ class LoadDrawing:
         end = Spot(tip, _side(direction)) if pulls else Spot(tail, _side(-direction))
         self.sketch.label(text, [*spots, end] if abs(direction[1]) > 0.5 else [end, *spots], colour)
 
-    def _inside(self, at: Array) -> bool:
-        """Whether a point lies in the undeformed wall: the outer side of a face stays the same as the wall moves."""
-        found = self.scene.blocks.containing(at)
-        return bool(self.scene.wall[found].any())
-
     def _draw_chain(self, loads: Sequence[LineLoad], *, live: bool) -> None:
         """Draw rows of arrows that adjoin; outside the wall they are moved outwards together, clear of other rows."""
-        rows, far = [self._row(load, live=live) for load in loads], 0
+        rows, far = [row_of(load, self.shape, self.a, self.largest[live]) for load in loads], 0
         colour, name = _look(live)
         step = 0.5 * self.a
 
@@ -259,39 +219,7 @@ class LoadDrawing:
             self._draw_row(row.tails + moved, row.tips + moved, row, colour, name, self.sizes[live][id(load)])
         self.strips += strips() + [row.strip for row in rows if not row.outside]
 
-    def _row(self, load: LineLoad, *, live: bool) -> "_Row":
-        """The arrows of a line load, where they are drawn if nothing is in their way."""
-        a, direction = self.a, unit_vector(np.array(load.force))
-        block, parts = load.parts(self.scene)
-        run = np.subtract(load.end, load.start)
-        along = run / np.hypot(*run)
-        share = MIN_ARROW + (1 - MIN_ARROW) * math.hypot(*load.force) / self.largest[live]
-        n = int(np.clip(np.hypot(*run) / (1.5 * a) + 1, 2, 60))
-        places = np.linspace(0.0, 1.0, n)
-        of = block[np.minimum(np.searchsorted(parts[:, 1], places), len(block) - 1)]
-        along_it = zip(np.array(load.start) + places[:, None] * run, of, strict=True)
-        tips = np.array([self.shape.drawn_at(*end) for end in along_it])
-        middle = np.add(load.start, load.end) / 2
-        is_shear = abs(along @ direction) > 0.97
-        across = np.array([-along[1], along[0]])
-        away = across if is_shear else -direction
-        beyond, before = self._inside(middle + 0.5 * a * away), self._inside(middle - 0.5 * a * away)
-        if beyond and not before:
-            away = -away
-        outside = not (beyond and before)
-        if is_shear and outside:
-            tips = tips + 0.6 * a * away
-        elif not is_shear and away @ direction > 0:  # it pulls
-            tips = tips + 1.5 * share * a * direction
-        tails = tips - (0.9 if is_shear else 1.5) * share * a * direction
-        both = np.concatenate([tails, tips])
-        air = 0.35 * a * away if is_shear else np.zeros(2)
-        inner = 1e-3 * (np.mean(both @ along) - both @ along)[:, None] * along  # so that adjoining rows do not overlap
-        strip = shapely.MultiPoint(np.concatenate([both - air, both + air]) + np.tile(inner, (2, 1))).convex_hull
-        outward = math.copysign(1.0, across @ away) * across
-        return _Row(tails, tips, strip, away, outward, is_shear, outside)
-
-    def _draw_row(self, tails: Array, tips: Array, row: "_Row", colour: str, name: str, text: str) -> None:
+    def _draw_row(self, tails: Array, tips: Array, row: Row, colour: str, name: str, text: str) -> None:
         both = np.concatenate([tails, tips])
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
         for tail, tip in zip(tails, tips, strict=True):
@@ -410,25 +338,6 @@ def _look(live: bool) -> tuple[str, str]:
 def _largest(loads: Sequence[Action]) -> float:
     """Largest line load [N/m]; 0 if there is none."""
     return max((math.hypot(*each.force) for each in loads if isinstance(each, LineLoad)), default=0.0)
-
-
-def _chains(loads: Sequence[LineLoad], reach: float) -> Indices:
-    """Chain number of each line load, ``(n,)``: loads in a chain adjoin end to end without a sharp turn.
-
-    Neither the line nor the force turns sharply.
-    """
-    ends = np.array([(each.start, each.end) for each in loads]).reshape(-1, 2, 2)
-    away = (ends[:, ::-1] - ends) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None, None]
-    apart = np.abs(ends[:, None, :, None] - ends[None, :, None, :]).max(axis=4)
-    straight = np.einsum("aik,bjk->abij", away, away) < -CHAIN_COSINE
-    force = np.array([unit_vector(np.array(each.force)) for each in loads])
-    adjoin = ((apart <= reach) & straight).any(axis=(2, 3)) & (force @ force.T > CHAIN_COSINE)
-    return components(np.argwhere(adjoin), len(loads))
-
-
-def _share(one: shapely.Geometry, other: shapely.Geometry, reach: float) -> bool:
-    """Whether two lines run along each other for more than a length [m]."""
-    return bool(shapely.length(one & other) > reach)
 
 
 def _side(direction: Array) -> tuple[float, float]:
