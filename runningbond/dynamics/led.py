@@ -254,7 +254,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     if not fell and lead.has_come_free(traverse.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     spread, left = _spread(lead, traverses), lead.growth_left(traverse)
-    outcome = replace(outcome, lower=least, upper=most + left)
+    lower = least - traverse.drag
+    outcome = replace(outcome, lower=lower, upper=most + left)
     room = (tolerance - spread if spread <= tolerance else tolerance) * max(traverse.answer, lead.least)
     has_formed = left <= room and lead.has_formed(traverse, tolerance, still=traverse.answer - least)
     if not fell and not has_formed:
@@ -263,7 +264,7 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         if traverse.answer > lead.most:
             still = f"the wall bears more than {LOCKED:g} times its largest dead load"
         message = f"no answer: {still}: {number(traverse.answer)}; {what}"
-        bounds = (None, most) if falls else (least, None)
+        bounds = (None, most) if falls else (lower, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if spread > tolerance and not _rate(lead.scene):
         why = joined("another speed changes it by more than the tolerance", lead.remedy(outcome.curve))

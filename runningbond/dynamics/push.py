@@ -217,6 +217,19 @@ class Push(Lead):
             return "the multiplier falls to nothing while the control point stays where it is"
         return f"the multiplier falls to nothing at {brink:.4g} m"
 
+    def doubt(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on blocks that vibrate without end, as friction can make them: damping takes a part of the load."""
+        if traverse.drag <= tolerance * traverse.answer:
+            return ""
+        share = f"{two_digits(100 * traverse.drag / traverse.answer)} %"
+        return (
+            f"blocks vibrate: damping takes {share} of the load at its largest, and the wall may bear less by as much"
+        )
+
+    def _damped(self, state: State) -> float:
+        """Work of the damping of all bodies [J]."""
+        return float(state.damped[np.isfinite(self.run.system.mass)].sum())
+
     def go(self, traverse: Traverse, speed: float) -> State:
         """Push at a speed of the blocks that move farthest [m/s]; return the state at the end."""
         run, state = self.run, self.start.copy()
@@ -231,10 +244,11 @@ class Push(Lead):
         for parts in _parts(peaks.windows):
             before, full_way = state.motion.copy(), 0.0
             for window, (part, length) in enumerate(zip(parts, lengths, strict=True), start=1):
-                since = state.time
+                since, damped = state.time, self._damped(state)
                 multiplier = run.drive(state, part * power, length, given=given)
                 full_way += part * speed * (state.time - since)
-                peaks.see(multiplier, 0.0, length, state, len(traverse.rows) + (window > peaks.windows // 2))
+                drag = max(0.0, self._damped(state) - damped) / (part * power * (state.time - since))
+                peaks.see(multiplier, drag, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                 if window == peaks.windows // 2:
                     middle = state.copy()
             # The mean multiplier of a row belongs to the middle of the row.
@@ -253,6 +267,7 @@ class Push(Lead):
         else:
             traverse.verdict = "undecided"
         self.conclude(traverse, peaks, seen)
+        traverse.drag, traverse.inertia = traverse.inertia, 0.0
         self._read_where_it_moves(traverse, [motion for motion, _ in seen])
         return state
 

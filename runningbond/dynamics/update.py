@@ -2,7 +2,8 @@
 
 Local damping α resists every mode by α times the force on it (Cundall 1987). Walls come to rest soonest with it, but it
 slows down drift with superposed vibration: a wall may creep under it that would fall. Combined damping resists by as
-much, but only while that force changes against the velocity, as always in a vibration (Itasca): it leaves drift alone.
+much, but only while that force changes against the velocity, as always in a vibration (Itasca): it leaves drift alone
+unless the force on it vibrates without end, as where sliding stones chatter.
 """
 
 from typing import Any, Literal, TypeAlias

@@ -16,7 +16,7 @@ from runningbond.dynamics.contact_update import ContactUpdate
 from runningbond.dynamics.push import Push
 from runningbond.dynamics.traverse import Traverse, TraverseRow
 from runningbond.joints import wall_points
-from runningbond.limit import limit_nonassociated
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.limit.kinematics import jump_operator
 from runningbond.pictures.curve import draw_curve
 from runningbond.results import Outcome
@@ -119,6 +119,45 @@ def test_ground_reactions_balance_push_and_weight() -> None:
     rests = outcome.curve_columns()["at rest"]
     assert rests[0] == 1
     assert not rests[1:].any()
+
+
+CHATTERS: dict[str, Any] = {
+    "wall": {
+        "outlines": [
+            [[-0.391, 0.805], [-0.483, 0.994], [-0.869, 0.683], [-0.703, 0.553]],
+            [[0.0, 0.895], [0.0, 1.105], [-0.483, 0.994], [-0.391, 0.805]],
+            [[0.391, 0.805], [0.483, 0.994], [0.0, 1.105], [0.0, 0.895]],
+            [[0.703, 0.553], [0.869, 0.683], [0.483, 0.994], [0.391, 0.805]],
+        ],
+        "ground": [
+            [[-1.669, -0.047], [-0.703, -0.047], [-0.703, 0.553], [-0.869, 0.683], [-1.669, 0.683]],
+            [[1.669, 0.683], [0.869, 0.683], [0.703, 0.553], [0.703, -0.047], [1.669, -0.047]],
+        ],
+        "thickness": 0.3,
+    },
+    "block": {"density": 2000.0},
+    "joint": {"friction": 0.34, "normal_stiffness": 1e11, "shear_stiffness": 7e10, "inset": 0.005},
+    "load": {
+        "gravity": 9.81,
+        "live": {"kind": "lateral"},
+        "dead": {"kind": "point", "at": [-0.2415, 1.0495], "force": [0, -1177.2]},
+    },
+}
+
+
+def test_what_damping_takes_is_no_strength() -> None:
+    """Two parts of an arch slide on inclined joints, and chatter. Equilibrium at the limit of friction has λ = .8134.
+
+    That does not change while they slide, and the mean of fluctuating forces obeys it too; damping takes the rest.
+    """
+    scene = panel(**CHATTERS)
+    outcome, bound = dem_dynamic(scene, 0.02, displacements="finite", distance=0.004), limit(scene).multiplier
+    assert bound == pytest.approx(0.8134, rel=1e-3)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < bound < outcome.upper
+    assert "blocks vibrate: damping takes" in outcome.message
 
 
 def test_push_does_not_depend_on_load_unit(monkeypatch: pytest.MonkeyPatch) -> None:
