@@ -402,12 +402,13 @@ class Wall:
         from .results import write_atomically
         from .scene_writer import toml
 
-        description, path = self.description, path_of("path", path)
-        if "drawing" in description["wall"]:
-            drawing = relpath(self.folder / description["wall"]["drawing"], path.parent)
-            description["wall"]["drawing"] = Path(drawing).as_posix()
-        if "file" in (history := description["load"].get("history", {})):
-            history["file"] = Path(relpath(self.folder / history["file"], path.parent)).as_posix()
+        description, path = {"title": self.scene.title} | self.description, path_of("path", path)
+        for table, key in ((description["wall"], "drawing"), (description["load"].get("history", {}), "file")):
+            if key in table:
+                # Resolved, because ".." leads out of the folder that a link points to, not of the one that it lies in.
+                file = self.folder / table[key]
+                there = relpath(file.parent.resolve() / file.name, path.parent.resolve())
+                table[key] = Path(there).as_posix()
         write_atomically(path, toml(description).encode())
 
     def __repr__(self) -> str:

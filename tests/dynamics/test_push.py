@@ -151,7 +151,7 @@ def test_what_damping_takes_is_no_strength() -> None:
     That does not change while they slide, and the mean of fluctuating forces obeys it too; damping takes the rest.
     """
     scene = panel(**CHATTERS)
-    outcome, bound = dem_dynamic(scene, 0.02, displacements="finite", distance=0.004), limit(scene).multiplier
+    outcome, bound = dem_dynamic(scene, 0.02, displacements="finite", distance=0.004), limit(scene).multiplier or 0.0
     assert bound == pytest.approx(0.8134, rel=1e-3)
     assert outcome.status == "collapse"
     assert outcome.lower is not None

@@ -16,6 +16,7 @@ from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.schema import scene_schema
 from runningbond.wall import TOP_LEVEL
 from tests.scene.drafting import BRICKS, closed, dxf, tables
+from tests.walls import content
 
 PANEL: dict[str, Any] = {
     "length": 1.44,
@@ -311,6 +312,29 @@ def test_every_change_is_checked(changes: dict[str, Any], said: str) -> None:
         if set(changes) != {"wall.length.x"} or "length" in wall.description["wall"]:
             with pytest.raises(rb.SceneError, match=re.escape(said)):
                 wall.with_(changes)
+
+
+@pytest.mark.parametrize("file", ["r.csv", "job/../r.csv"])
+def test_wall_written_through_a_linked_folder_keeps_its_record(file: str, tmp_path: Path) -> None:
+    """The system follows the link to disk/job before it applies "..": there is another record of that name."""
+    (tmp_path / "disk" / "job").mkdir(parents=True)
+    for folder, peak in ((tmp_path, 0.5), (tmp_path / "disk", 0.05)):
+        times = np.linspace(0.0, 0.4, 41)
+        lines = (f"{t:.6f},{peak * np.sin(2 * np.pi * t / 0.4):.6f}" for t in times)
+        (folder / "r.csv").write_text("\n".join(lines) + "\n")
+    (tmp_path / "job").symlink_to("disk/job")
+    history = {"file": file, "quantity": "g"}
+    stiff = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 1e9}
+    wall = rb.Wall.from_dict(content(load={"gravity": 9.81, "history": history}, joint=stiff), tmp_path)
+    for at in (tmp_path / "job" / "wall.toml", tmp_path / "wall.toml"):
+        wall.to_toml(at)
+        assert same_scene(rb.read(at).scene, wall.scene)
+
+
+def test_wall_without_a_title_keeps_its_name_when_written(tmp_path: Path) -> None:
+    wall = rb.Wall.from_dict(content(title=None))
+    wall.to_toml(tmp_path / "other.toml")
+    assert rb.read(tmp_path / "other.toml").scene.title == wall.scene.title == "untitled"
 
 
 def test_wall_with_python_objects_is_not_written(tmp_path: Path) -> None:
