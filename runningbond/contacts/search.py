@@ -288,18 +288,34 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
     leaning corner that comes round the end of a side moves in before the next search, the farther the more it leans:
     its overlap is at least the one that it reaches by then.
     """
-    length, joints = outline.length, outline.joints.length
-    corners, after = outline.corners(motion), outline.blocks.successor
+    joints, shorter = outline.joints.length, np.minimum(outline.length[e], outline.length[f])
+    by_then = outline.margin * np.minimum(lean / FLAT, 1.0)
+    least = np.clip(by_then, LEAST_OVERLAP * shorter, shorter / 2)
+    later = np.clip(_overlap(outline, e, f, lean, motion), least, shorter / 2)
+    shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
+    return shared * outline.thickness_between(e, f) / 2
+
+
+def _overlap(outline: Outline, e: Indices, f: Indices, lean: Array, motion: Array) -> Array:
+    """Overlap ``(n,)`` [m] of facing sides that lean by ``(n,)`` [rad], along f; negative if they are apart."""
+    length, corners, after = outline.length, outline.corners(motion), outline.blocks.successor
     along = (corners[after[f]] - corners[f]) / length[f, None]
     first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
     behind = np.where((lean > FLAT)[:, None], [outline.run_on[e] * np.cos(lean)[:, None], outline.run_on[f]], 0.0)
     (behind_last, behind_first), (before, beyond) = behind.transpose(0, 2, 1)
-    overlap = np.minimum(last + behind_last, length[f] + beyond) - np.maximum(first - behind_first, -before)
-    shorter = np.minimum(length[e], length[f])
-    by_then = outline.margin * np.minimum(lean / FLAT, 1.0)
-    later = np.clip(overlap, np.clip(by_then, LEAST_OVERLAP * shorter, shorter / 2), shorter / 2)
-    shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
-    return shared * outline.thickness_between(e, f) / 2
+    overlap: Array = np.minimum(last + behind_last, length[f] + beyond) - np.maximum(first - behind_first, -before)
+    return overlap
+
+
+def length_left(outline: Outline, contacts: Contacts, motion: Array) -> Array:
+    """Part of the length of its joint that each end's sides still overlap by, ``(n,)``; 1 for sides that met later."""
+    e, f = contacts.ends[:, 4:].astype(np.int64).T
+    owner, spin = outline.blocks.owner, motion[2::3]
+    lean = np.abs(contacts.tilt + spin[owner[e]] - spin[owner[f]])
+    known = contacts.joint >= 0
+    left = np.ones(len(contacts))
+    left[known] = _overlap(outline, e, f, lean, motion)[known] / outline.joints.length[contacts.joint[known]]
+    return left
 
 
 def position_of(keys: Indices, sought: Indices) -> Indices:
