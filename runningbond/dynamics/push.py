@@ -221,10 +221,8 @@ class Push(Lead):
         """Note on blocks that vibrate without end, as friction can make them: damping takes a part of the load."""
         if traverse.drag <= tolerance * traverse.answer:
             return ""
-        share = f"{two_digits(100 * traverse.drag / traverse.answer)} %"
-        return (
-            f"blocks vibrate: damping takes {share} of the load at its largest, and the wall may bear less by as much"
-        )
+        share = f"damping takes {two_digits(100 * traverse.drag / traverse.answer)} % of the load at its largest"
+        return f"blocks vibrate: {share}, and the wall may bear less by as much"
 
     def _damped(self, state: State) -> float:
         """Work of the damping of all bodies [J]."""
@@ -267,6 +265,7 @@ class Push(Lead):
         else:
             traverse.verdict = "undecided"
         self.conclude(traverse, peaks, seen)
+        # The drag was seen in place of the inertia, which is no part of a push whose power is kept.
         traverse.drag, traverse.inertia = traverse.inertia, 0.0
         self._read_where_it_moves(traverse, [motion for motion, _ in seen])
         return state

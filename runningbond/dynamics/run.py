@@ -152,8 +152,8 @@ class Run:
 
     def _return_to(self, state: State) -> None:
         """Continue with the interface on the contacts of a state, which may be another state than before."""
-        if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
-            self._take_up(self._update.interface_on(contacts), contacts)
+        if (interface := self.interface_of(state)) is not self.interface:
+            self._take_up(interface, contacts_of(state))
 
     def _pieces(self, state: State, steps: int, load: Array, more: float | None) -> Iterator[int]:
         """Numbers of steps to take one after the other; the contacts stay valid during each of them.

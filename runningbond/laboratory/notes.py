@@ -8,7 +8,6 @@ from .modes import GROUPS, NAMED
 LOWER = 0.02
 """Part of a wall's height by which its actuator may be lower because sizes are rounded."""
 
-
 SAME_PEAK = 0.05
 """Relative difference up to which the largest forces of a wall's record and of its table are the same."""
 

@@ -31,7 +31,7 @@ OPTIONS: dict[str, bool | int | float | str] = {
 LEAST_SECONDS, SECONDS = 5.0, 1e-5
 """Time after which a program is given up: at least so long, and so long times the square of its number of columns.
 
-That is a hundred times as long as programs take: HiGHS 1.16 may never end on one, without counting any iterations.
+Programs take far less. HiGHS 1.16 may never end on one, without counting any iterations.
 """
 
 LARGE_COEFFICIENT, FINE_TOLERANCE = 1e4, 1e-9

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+import shapely.affinity
 
 from runningbond.scene import Array, LineLoad, Scene
 from runningbond.scene.actions import unit_vector
@@ -34,6 +35,17 @@ class Row:
     outward: Array  # and that across the line, in which the row may be moved
     is_shear: bool
     outside: bool  # on a face of the wall, and not in its middle
+
+    def overlaps(self, strip: shapely.Geometry) -> bool:
+        """Whether the arrows cover a part of another strip."""
+        return bool(shapely.area(self.strip & strip) > 1e-9 * self.strip.area)
+
+    def moved(self, way: float) -> "Row":
+        """The row, moved outwards by a way [m] if it is outside the wall."""
+        by = way * self.outward * self.outside
+        return replace(
+            self, tails=self.tails + by, tips=self.tips + by, strip=shapely.affinity.translate(self.strip, *by)
+        )
 
 
 def row_of(load: LineLoad, shape: DeformedShape, a: float, largest: float) -> Row:

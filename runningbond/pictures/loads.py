@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from shapely import affinity
 
 from runningbond.scene import (
     Action,
@@ -205,21 +204,15 @@ class LoadDrawing:
 
     def _draw_chain(self, loads: Sequence[LineLoad], *, live: bool) -> None:
         """Draw rows of arrows that adjoin; outside the wall they are moved outwards together, clear of other rows."""
-        rows, far = [row_of(load, self.shape, self.a, self.largest[live]) for load in loads], 0
-        colour, name = _look(live)
-        step = 0.5 * self.a
-
-        def strips() -> list[shapely.Geometry]:
-            return [affinity.translate(row.strip, *(far * step * row.outward)) for row in rows if row.outside]
-
-        while any(shapely.area(strip & other) > 1e-9 * strip.area for strip in strips() for other in self.strips):
-            far += 1
+        rows = [row_of(load, self.shape, self.a, self.largest[live]) for load in loads]
+        while any(row.outside and row.overlaps(other) for row in rows for other in self.strips):
+            rows = [row.moved(0.5 * self.a) for row in rows]
+        self.strips += [row.strip for row in rows]
         for load, row in zip(loads, rows, strict=True):
-            moved = far * step * row.outward if row.outside else np.zeros(2)
-            self._draw_row(row.tails + moved, row.tips + moved, row, colour, name, self.sizes[live][id(load)])
-        self.strips += strips() + [row.strip for row in rows if not row.outside]
+            self._draw_row(row, *_look(live), self.sizes[live][id(load)])
 
-    def _draw_row(self, tails: Array, tips: Array, row: Row, colour: str, name: str, text: str) -> None:
+    def _draw_row(self, row: Row, colour: str, name: str, text: str) -> None:
+        tails, tips = row.tails, row.tips
         both = np.concatenate([tails, tips])
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
         for tail, tip in zip(tails, tips, strict=True):
@@ -254,9 +247,7 @@ class LoadDrawing:
             if not self.shape.displacement.any():  # a moved beam is no longer at this height
                 self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
         drawn = self.shape.drawn_at(tip, number)
-        if (
-            beam.force_line == "fixed" and not live
-        ):  # the force keeps its line, along which its point moves with the beam
+        if beam.force_line == "fixed" and not live:  # the point moves with the beam, but along the line only
             drawn = tip + (drawn - tip) @ direction * direction
         self._force(drawn, direction, text, colour, name, both=both)
 

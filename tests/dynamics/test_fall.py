@@ -29,7 +29,7 @@ def pillar(inclined: int, dip: float, **joint: Any) -> Scene:
 
 @pytest.mark.parametrize(("inclined", "dip"), [(3, 0.087), (3, 0.1)])
 def test_stones_that_chatter_as_they_slide_have_the_exact_load(inclined: int, dip: float) -> None:
-    """λ = (μ - s) / (1 + μ s) on a slope s. Viscosity dissipates two fifths of the work, counted to 1.4 to 2 %."""
+    """λ = (μ - s) / (1 + μ s) on a slope s. The work of viscosity, counted by its last traction, failed these falls."""
     outcome, slope = dem_dynamic(pillar(inclined, dip)), dip / WIDTH
     assert outcome.status == "collapse", outcome.message
     assert outcome.lower is not None
