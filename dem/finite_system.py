@@ -17,7 +17,7 @@ from runningbond.contacts.rigid_sides import (
     turn_out,
     turned_sharp,
 )
-from runningbond.contacts.search import ContactForces, Contacts, find_contacts, position_of, resting
+from runningbond.contacts.search import ContactForces, Contacts, find_contacts, position_of, present_area, resting
 from runningbond.dynamics import BlockSystem, Interface, moving_far
 from runningbond.dynamics.displacements import check_finite
 from runningbond.joints import wall_rule
@@ -61,6 +61,10 @@ class RigidContacts:
         """Contacts closer than a margin [m] after a motion ``(3 nb,)``, grouped by material."""
         contacts = find_contacts(self.outline, motion, margin)
         return self._materials.side_by_side(contacts)
+
+    def bearing(self, contacts: Contacts) -> Contacts:
+        """The contacts with the areas over which blocks bear now, as in `ContactSearch`."""
+        return replace(contacts, area=present_area(self.outline, contacts))
 
     def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
         """Interface of the blocks on given contacts."""

@@ -17,6 +17,7 @@ from runningbond.contacts.search import ContactForces, Contacts, facing_sides, f
 from runningbond.dynamics import BlockSystem, Interface, moving_far
 from runningbond.scene import Array, Indices, Mask
 
+from .bearing_areas import BearingAreas
 from .deformable_sides import (
     DeformableSides,
     PlacedNodes,
@@ -55,10 +56,13 @@ class DeformableContacts:
     def __init__(self, blocks: NodeOutline) -> None:
         self.blocks, self.outline, self._materials = blocks, blocks.outline, ContactMaterials(blocks.scene)
         self._of_joints: tuple[Indices, Indices, Array] = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
-        undeformed = self.find(np.zeros(len(blocks.wall.mass)), self.outline.margin)
-        area = self._areas(undeformed)
-        self._of_joints = undeformed.key, undeformed.joint, area
-        self.undeformed = replace(undeformed, area=area, glued=undeformed.joint >= 0)
+        still = np.zeros(len(blocks.wall.mass))
+        found = self.find(still, self.outline.margin)
+        self._areas = BearingAreas(blocks, found, self._gathered(found, still).contact[:, :2])
+        self._of_joints = found.key, found.joint, self._areas.undeformed
+        self.undeformed = replace(found, area=self._areas.undeformed, glued=found.joint >= 0)
+        if self._materials.law(found).law.closed is not None:
+            self.undeformed = replace(self.undeformed, margin=self.bearing(found).margin)
 
     def find(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then points inside them."""
@@ -68,11 +72,7 @@ class DeformableContacts:
         v, _, _, _, e, f = ends.ends.astype(np.int64).T
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
         # The resting corner is the last of side e or the first of f at the low end, and the reverse at the high end.
-        facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
-        # An end represents its side up to half a spacing before the first point far enough inside to carry load.
-        length = self.blocks.nodes.length[facet] / self.blocks.parts
-        passed = np.floor(np.maximum(self.blocks.sides.inset[corner], 0.0) / length + HALFWAY)
-        area = np.minimum(ends.area, self.outline.thickness_between(e, f) * (passed + 0.5) * length)
+        area = np.minimum(ends.area, self.outline.thickness_between(e, f) * self._of_ends[side, np.where(low, 1, 0)])
         inner = self._inner(rigid, margin)
         contacts = Contacts(
             ends.motion,
@@ -90,25 +90,11 @@ class DeformableContacts:
         contacts = replace(contacts, area=np.where(known, np.append(area, 0.0)[at], contacts.area))
         return self._materials.side_by_side(contacts)
 
-    def _areas(self, contacts: Contacts) -> Array:
-        """Areas ``(n,)`` [m²] of contacts on the undeformed wall, by trapezoids that add up to the area of their joint.
-
-        The area under the arcs of corners is distributed over all contacts of the joint.
-        """
-        geometry, (opening, _) = self.geometry(contacts), (jumps := np.zeros((2, len(contacts))))
-        gather_deformable(np.zeros(len(self.blocks.wall.mass)), tuple(geometry), *jumps)
-        joints, joint, area = self.outline.joints, contacts.joint, contacts.area.copy()
-        run = (joints.ends[:, 1] - joints.ends[:, 0]) / joints.length[:, None]
-        own = np.flatnonzero((joint >= 0) & (opening < self.outline.blocks.tolerance))
-        along = (geometry.contact[own, :2] * run[joint[own]]).sum(axis=1)
-        own, along = own[order := np.lexsort((along, joint[own]))], along[order]
-        for here in np.split(np.arange(len(own)), np.flatnonzero(np.diff(joint[own])) + 1):
-            place = along[here]
-            borders = np.concatenate([place[:1], (place[1:] + place[:-1]) / 2, place[-1:]])
-            number = joint[own[here[0]]]
-            whole = self.blocks.scene.thickness_of_joints[number] * joints.length[number]
-            area[own[here]] = whole * (np.diff(borders) / np.ptp(place) if len(here) > 1 else 1.0)
-        return area
+    def bearing(self, contacts: Contacts) -> Contacts:
+        """The contacts with the areas over which blocks bear now, as in `ContactSearch`."""
+        motion = np.zeros(len(self.blocks.wall.mass))
+        motion[self.blocks.wall.rigid] = contacts.motion.reshape(-1, 3)
+        return self._areas.present(contacts, self._gathered(contacts, motion).contact[:, :2])
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
         """Points inside one of two facing sides that are near the other: points of block b, or of a if b is held."""
@@ -139,20 +125,37 @@ class DeformableContacts:
         point, pair, on = point[near], pair[near], on[near]
         rows = (len(outline.radius) + point, on, of_a[pair], after[on], e[pair], f[pair])
         joint = outline.joint_of(e, f)[pair]
-        length_of = nodes.length[points.facet[[point, point - 1]]] / self.blocks.parts
-        area = outline.thickness_between(own, other)[pair] * length_of.sum(axis=0) / 2
+        area = outline.thickness_between(own, other)[pair] * self.blocks.gap[[point, point - 1]].sum(axis=0) / 2
         still = np.zeros(len(point))
         return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, joint, still > 0)
 
     @cached_property
     def _bearing(self) -> Mask:
         """Which points are half-way to the next one (`HALFWAY`) inside the arcs of their side's corners, ``(ns,)``."""
-        (facet, share, half), nodes, sides = self.blocks.points, self.blocks.nodes, self.blocks.sides
-        side = np.repeat(np.arange(len(sides.extent)), np.diff(self.blocks.first))[facet]
-        near_end, far_end = (sides.inset[sides.ends[side, end]] for end in (0, 1))
-        along = nodes.begin[facet] + share * nodes.length[facet]
-        inside = np.minimum(along - near_end, sides.extent[side] - far_end - along)
-        return np.asarray(inside > 2 * HALFWAY * half)
+        side, along = self._places
+        near_end, far_end = self.blocks.sides.inset[self.blocks.sides.ends].T
+        inside = np.minimum(along - near_end[side], self.blocks.sides.extent[side] - far_end[side] - along)
+        return np.asarray(inside > 2 * HALFWAY * self.blocks.points.half)
+
+    @cached_property
+    def _of_ends(self) -> Array:
+        """Length ``(nv, 2)`` [m] of each side that its start and its end represent.
+
+        It reaches half-way from the last point that does not bear to the first one that does.
+        """
+        gap, extent, (side, along) = self.blocks.gap, self.blocks.sides.extent, self._places
+        first = np.where(self._bearing, along - np.roll(gap, 1) / 2, extent[side] / 2)
+        last = np.where(self._bearing, along + gap / 2, extent[side] / 2)
+        start = self.blocks.first[:-1] * self.blocks.parts
+        of_start, of_end = np.minimum.reduceat(first, start), extent - np.maximum.reduceat(last, start)
+        return np.column_stack([of_start, of_end])
+
+    @cached_property
+    def _places(self) -> tuple[Indices, Array]:
+        """Side of each point, and its distance from the start of that side [m], two ``(ns,)``."""
+        (facet, share, _), nodes = self.blocks.points, self.blocks.nodes
+        side = np.repeat(np.arange(len(self.blocks.first) - 1), np.diff(self.blocks.first))[facet]
+        return side, nodes.begin[facet] + share * nodes.length[facet]
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with new buffers."""
@@ -226,13 +229,8 @@ class DeformableContacts:
     @cached_property
     def _joint_points(self) -> tuple[Indices, Array]:
         """Key of the nearest contact of each joint point's joint, and the point's part of that contact's area."""
-        contacts, points = self.undeformed, self.blocks.wall.elements.points
-        geometry = self._gathered(contacts, np.zeros(len(self.blocks.wall.mass)))
-        nearest = np.zeros(len(points), dtype=np.int64)
-        for joint in np.unique(points.joint):
-            here, own = np.flatnonzero(points.joint == joint), np.flatnonzero(contacts.joint == joint)
-            apart = points.position[here, None] - geometry.contact[own, :2]
-            nearest[here] = own[np.hypot(apart[..., 0], apart[..., 1]).argmin(axis=1)]
+        points, contacts = self.blocks.wall.elements.points, self._areas.contacts
+        nearest, _ = self._areas.nearest
         area = np.bincount(nearest, points.area, len(contacts))
         return contacts.key[nearest], points.area / area[nearest]
 

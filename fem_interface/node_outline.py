@@ -4,7 +4,6 @@ Contacts are at these points, which are the nodes and, if the pressure distribut
 between the nodes.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -13,8 +12,8 @@ import numpy as np
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
 from runningbond.dynamics.displacements import check_finite
-from runningbond.joints.points import trapezoids
-from runningbond.joints.wall_points import BETWEEN, spreads
+from runningbond.joints.points import Rule, lobatto
+from runningbond.joints.wall_points import spread_rule, spreads
 from runningbond.scene import Array, Indices, Scene
 
 from .block_kernels import NodalTables, nodal_tables
@@ -46,6 +45,8 @@ class NodeOutline:
         The outline nodes, the points along the sides, and the sides, in the form that the kernels use.
     parts : int
         Number of points on each facet.
+    gap : (ns,) float
+        Distance from each point to the next one of its side, from and to the arcs at the side's ends [m].
     tables : list of (n, 2, m) float
         For each template, the displacements of its outline nodes per deformation mode.
     """
@@ -59,6 +60,7 @@ class NodeOutline:
     points: SidePoints
     sides: Sides
     parts: int
+    gap: Array
     tables: list[Array]
 
     @property
@@ -108,14 +110,15 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     """
     check_finite(scene)
     ContactMaterials(scene)
-    parts = math.ceil((BETWEEN - 1) / cells) if spreads(scene, finite=True) else 1
-    wall, outline = modal_wall(scene, cells, modes, trapezoids(parts)), Outline.of(scene)
+    rule = spread_rule(cells) if spreads(scene, finite=True) else lobatto()
+    wall, outline = modal_wall(scene, cells, modes, rule), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])
     row, tables = _tables(wall, node)
     nodes = _outline_nodes(wall, node, first, _places(wall, wall.mesh.block[node], row, tables)[0])
-    points, sides = _points(nodes.length, parts), _sides(outline, first, nodes.length)
-    return NodeOutline(wall, outline, node, row, first, nodes, points, sides, parts, tables)
+    sides = _sides(outline, first, nodes.length)
+    points, gap = _points(rule, nodes.length, sides)
+    return NodeOutline(wall, outline, node, row, first, nodes, points, sides, len(rule.nodes) - 1, gap, tables)
 
 
 def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, place: Indices) -> OutlineNodes:
@@ -138,11 +141,21 @@ def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, place: Indice
     )
 
 
-def _points(length: Array, parts: int) -> SidePoints:
-    """Points along the sides: `parts` of them on each facet, whose lengths are ``(no,)`` [m]."""
-    apart = np.repeat(length, parts) / parts
-    half = np.minimum(apart, np.roll(apart, 1)) / 2
-    return SidePoints(np.repeat(np.arange(len(length)), parts), np.tile(np.arange(parts) / parts, len(length)), half)
+def _points(rule: Rule, length: Array, sides: Sides) -> tuple[SidePoints, Array]:
+    """Points of a rule along facets with lengths ``(no,)`` [m], and the `NodeOutline.gap` between them.
+
+    As on joint elements, the rule begins and ends where the arcs of the side's corners do, if these leave some of the
+    facet. The end of a facet is the start of the next one.
+    """
+    arcs = np.zeros((2, len(length)))
+    for end in (0, 1):
+        arcs[end, sides.outer[:, end]] = np.maximum(0.0, sides.inset[sides.ends[:, end]])
+    arcs *= arcs.sum(axis=0) < length
+    place = arcs[0][:, None] + np.outer(length - arcs.sum(axis=0), (rule.nodes + 1) / 2)
+    gap, parts = np.diff(place).ravel(), len(rule.nodes) - 1
+    place[:, 0] = 0.0
+    share = (place[:, :-1] / length[:, None]).ravel()
+    return SidePoints(np.repeat(np.arange(len(length)), parts), share, np.minimum(gap, np.roll(gap, 1)) / 2), gap
 
 
 def _sides(outline: Outline, first: Indices, length: Array) -> Sides:

@@ -296,26 +296,41 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
     return shared * outline.thickness_between(e, f) / 2
 
 
+def _along(outline: Outline, e: Indices, f: Indices, motion: Array) -> tuple[Array, Array]:
+    """Positions ``(n,)`` [m], along sides f, of the ends of sides e near the start and the end of f, in a motion."""
+    corners, after = outline.corners(motion), outline.blocks.successor
+    along = (corners[after[f]] - corners[f]) / outline.length[f, None]
+    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
+    return first, last
+
+
 def _overlap(outline: Outline, e: Indices, f: Indices, lean: Array, motion: Array) -> Array:
     """Overlap ``(n,)`` [m] of facing sides that lean by ``(n,)`` [rad], along f; negative if they are apart."""
-    length, corners, after = outline.length, outline.corners(motion), outline.blocks.successor
-    along = (corners[after[f]] - corners[f]) / length[f, None]
-    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
+    (first, last), length = _along(outline, e, f, motion), outline.length
     behind = np.where((lean > FLAT)[:, None], [outline.run_on[e] * np.cos(lean)[:, None], outline.run_on[f]], 0.0)
     (behind_last, behind_first), (before, beyond) = behind.transpose(0, 2, 1)
     overlap: Array = np.minimum(last + behind_last, length[f] + beyond) - np.maximum(first - behind_first, -before)
     return overlap
 
 
-def length_left(outline: Outline, contacts: Contacts, motion: Array) -> Array:
-    """Part of the length of its joint that each end's sides still overlap by, ``(n,)``; 1 for sides that met later."""
+def bearing_length(outline: Outline, contacts: Contacts) -> Array:
+    """Length ``(n,)`` [m] over which the sides of each end would lie on each other if they turned flat about that end.
+
+    It does not change as a block rocks on its corner, only as it slides; negative for sides that are apart.
+    """
     e, f = contacts.ends[:, 4:].astype(np.int64).T
-    owner, spin = outline.blocks.owner, motion[2::3]
-    lean = np.abs(contacts.tilt + spin[owner[e]] - spin[owner[f]])
-    known = contacts.joint >= 0
-    left = np.ones(len(contacts))
-    left[known] = _overlap(outline, e, f, lean, motion)[known] / outline.joints.length[contacts.joint[known]]
-    return left
+    (first, last), length = _along(outline, e, f, contacts.motion), outline.length
+    low = contacts.inwards > 0
+    start, end = np.where(low, first, last - length[e]), np.where(low, first + length[e], last)
+    return np.asarray(np.minimum(end, length[f]) - np.maximum(start, 0.0))
+
+
+def present_area(outline: Outline, contacts: Contacts) -> Array:
+    """Area ``(n,)`` [m²] of each end, where ends of joints have half the area over which the blocks bear there now."""
+    e, f = contacts.ends[:, 4:].astype(np.int64).T
+    shorter = np.minimum(outline.length[e], outline.length[f])
+    half = np.clip(bearing_length(outline, contacts), LEAST_OVERLAP * shorter, shorter) / 2
+    return np.where(contacts.joint >= 0, half * outline.thickness_between(e, f), contacts.area)
 
 
 def position_of(keys: Indices, sought: Indices) -> Indices:

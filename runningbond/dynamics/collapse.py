@@ -156,5 +156,5 @@ class CollapseDetector:
 
 def crushing_note(run: Run, state: State) -> str:
     """Note on joints that are crushed in a state; empty if none is."""
-    note = "crushed joints carry bending at points, with an error of 3 to 5 % that the bracket does not include"
+    note = "crushed joints carry bending at points, with an error of up to 3 % that the bracket does not include"
     return note if run.interface.law.crushed(state.history).any() else ""

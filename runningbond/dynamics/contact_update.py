@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.contacts.search import Contacts, position_of
+from runningbond.contacts.search import Contacts, bearing_length, position_of
 from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
 from runningbond.scene import Array
 
@@ -25,6 +25,9 @@ MOST_STEPS = 1000
 
 INTERFACES_KEPT = 2
 """Number of interfaces kept: an observed state may still have the contacts before those of the state that goes on."""
+
+SAME_LENGTH = 1e-9
+"""Relative difference of two bearing lengths that is rounding."""
 
 
 class ContactUpdate:
@@ -95,6 +98,8 @@ class ContactUpdate:
         whole = (interface.law.tension > 0) & (interface.law.damage(history) < 1)
         drawn = OPENING_MARGIN * opening[whole].max(initial=0.0)
         contacts = search.find(state.motion, max(search.outline.margin, fast, deep, drawn))
+        crushes = interface.law.law.closed is not None  # to joints that cannot crush the area is no strength
+        contacts = search.bearing(contacts) if crushes else contacts
         # Match ends of the same two sides; or, for a corner that has rolled over, the same corner on the same side,
         # which keeps its area: another stiffness would jolt it.
         turned = position_of(rested, search.resting(contacts, state.motion))
@@ -104,7 +109,8 @@ class ContactUpdate:
         area[on & ~still] = before.area[turned[on & ~still]]
         # Sides that met later carry more as their overlap grows, and keep the larger area.
         kept_area = before.area[same[still]]
-        area[still] = np.where(contacts.joint[still] >= 0, kept_area, np.maximum(area[still], kept_area))
+        of_joint = area[still] if crushes else kept_area
+        area[still] = np.where(contacts.joint[still] >= 0, of_joint, np.maximum(area[still], kept_area))
         glued[still] = before.glued[same[still]]
 
         state.contacts = replace(contacts, area=area, glued=glued)
@@ -122,9 +128,13 @@ class ContactUpdate:
         state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
         state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
-        share = np.zeros(len(kept))  # fraction of its area that a point had before
+        share = np.zeros(len(kept))  # area that a point had before, relative to its area
         share[moved] = 1.0
-        share[kept >= 0] = np.minimum(1.0, interface.area[kept[kept >= 0]] / renewed.area[kept >= 0])
+        share[kept >= 0] = interface.area[kept[kept >= 0]] / renewed.area[kept >= 0]
+        # Where a block slides off its neighbour, contacts only grow by what their neighbours lose, pressed as they are.
+        length, less = bearing_length(search.outline, contacts), np.zeros(len(contacts) + 1, dtype=bool)
+        less[:-1][still] = length[still] <= bearing_length(search.outline, before)[same[still]] * (1 + SAME_LENGTH)
+        share[less[new_ends]] = np.maximum(1.0, share[less[new_ends]])
         state.friction += _spread(renewed, state, share)
         return renewed
 
@@ -144,10 +154,11 @@ class ContactUpdate:
 
 
 def _spread(interface: Interface, state: State, share: Array) -> float:
-    """Spread the forces of points whose area has grown (`share` is the old part), in place; return the energy lost [J].
+    """Pass on the forces of points whose area has changed by 1 / `share`, in place; return the energy lost [J].
 
     New contact area starts without pressure or shear: the force of a point is kept and not its traction, otherwise
-    springs would be compressed without a cause. Points of a law without a plastic closure keep their traction.
+    springs would be compressed without a cause. Area that is lost takes its force and its energy along. Points of a law
+    without a plastic closure keep their traction.
     """
     law, history, closed = interface.law, state.history, interface.law.law.closed
     if closed is None:
@@ -160,7 +171,7 @@ def _spread(interface: Interface, state: State, share: Array) -> float:
     seat[grown] = -opening[grown] - closed(law, np.maximum(0.0, -share * normal))[0][grown]
     rest[grown] = part * rest[grown] + (1 - part) * slip[grown]
     _, after = _borne(interface, opening, slip, history)
-    return float(interface.area[grown] @ (part * before[grown] - after[grown]))
+    return float(interface.area @ (share * before - after))
 
 
 def _borne(interface: Interface, opening: Array, slip: Array, history: Array) -> tuple[Array, Array]:

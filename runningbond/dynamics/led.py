@@ -21,7 +21,6 @@ from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
 from .beam_drive import BeamDrive
-from .bearings import bearing_note
 from .collapse import Criteria, crushing_note
 from .dead_load import fall_under_dead_load, put_on_dead_load
 from .lead import Lead
@@ -114,8 +113,7 @@ def collapse_of_led(
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, traverses, tolerance)
-    notes = crushing_note(run, traverse.best), bearing_note(run, scene, traverse.best)
-    outcome = replace(outcome, message=joined(outcome.message, *notes))
+    outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
     if outcome.status == "undecided" and outcome.upper is None and lead.moves and self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)

@@ -106,6 +106,9 @@ class ContactSearch(Protocol):
     def find(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(nd,)``."""
 
+    def bearing(self, contacts: Contacts) -> Contacts:
+        """The contacts with areas in joints that add up to that of the length over which the bodies overlap now."""
+
     def interface_on(self, contacts: Contacts, system: "BlockSystem") -> Interface:
         """The interface of a system's bodies on other contacts than the undeformed ones."""
 

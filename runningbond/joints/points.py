@@ -36,13 +36,6 @@ def lobatto(points: int = 2) -> Rule:
     return Rule(nodes, 2 / (points * (points - 1) * legendre(nodes) ** 2))
 
 
-def trapezoids(parts: int) -> Rule:
-    """Trapezoidal rule on equal parts; for one part, its points are the two ends."""
-    weights = np.full(parts + 1, 2 / parts)
-    weights[[0, -1]] /= 2
-    return Rule(np.linspace(-1, 1, parts + 1), weights)
-
-
 def gauss(points: int) -> Rule:
     """Gauss–Legendre rule; exact for smooth tractions, unsafe for rocking joints."""
     if points < 1:

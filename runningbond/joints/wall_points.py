@@ -1,7 +1,5 @@
 """Joint points of a wall, with the strength and stiffness of their joints' materials."""
 
-import math
-
 import numpy as np
 
 from runningbond.scene import Array, Indices, Scene, SceneError, table_of
@@ -32,7 +30,7 @@ def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:
     perfectly plastic joints carry the same load in both cases, unless friction leads to another load path; a softening
     joint carries up to three times as much if it is evaluated only at its ends (a stone on a bed).
 
-    If joints have several parts, each part has a rule, and all parts have about as many points as a whole joint.
+    If joints have several parts, each part has a rule (`spread_rule`).
     """
     return spread_rule(parts) if spreads(scene, finite=finite) else lobatto()
 
@@ -72,8 +70,17 @@ def ends_note(scene: Scene, points: JointPoints) -> str:
 
 
 def spread_rule(parts: int = 1) -> Rule:
-    """Points of `wall_rule` for joints that soften, crush or close."""
-    return lobatto(BETWEEN if parts == 1 else max(MIN_POINTS, 1 + math.ceil((BETWEEN - 1) / parts)))
+    """Points of `wall_rule` for joints that soften, crush or close: on parts, at the ends as near as on a whole joint.
+
+    With wider spaces there, joints crack in larger jumps and carry more: by 3 % with 5 points on each of two parts.
+    """
+    fewest = range(MIN_POINTS, BETWEEN)
+    return next((rule for rule in map(lobatto, fewest) if _end_space(rule) <= parts * _end_space()), lobatto(BETWEEN))
+
+
+def _end_space(rule: Rule | None = None) -> float:
+    """Distance of the first two nodes of a rule, of that with `BETWEEN` points by default."""
+    return float(np.diff((rule or lobatto(BETWEEN)).nodes[:2])[0])
 
 
 def listed_points(scene: Scene, count: int) -> JointPoints | None:

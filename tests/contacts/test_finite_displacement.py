@@ -18,22 +18,17 @@ from dem.rigid_system import contact_points, rigid_system
 from runningbond.compare import published_scene
 from runningbond.contacts.outline import Outline
 from runningbond.contacts.rigid_sides import gather_sharp, gather_sides, scatter_sides, sharp_opening
-from runningbond.contacts.search import find_contacts, jumps, length_left
+from runningbond.contacts.search import bearing_length, find_contacts, jumps
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.contact_update import contacts_of
 from runningbond.joints import joint_stiffness
 from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal
 from runningbond.scene import (
     Array,
-    BlockMaterial,
-    JointMaterial,
-    Load,
     Mortar,
     Scene,
     SceneError,
-    Settlement,
     Stiffness,
-    build_scene,
 )
 from tests.at_length import at_length
 from tests.dynamics.test_dynamics import GRAVITY, STIFF, block_on_base
@@ -264,38 +259,27 @@ def test_free_pile_conserves_momentum_over_contact_searches() -> None:
     assert state.friction > 0
 
 
-@pytest.mark.parametrize(("slid", "turned"), [(0.0, 0.0), (0.3, 0.0), (-0.4, 0.0), (0.3, 1e-3), (0.9, 0.0)])
-def test_length_left_is_the_overlap_of_blocks_that_slide(slid: float, turned: float) -> None:
-    """One block slides on another of its length, or also rotates a little; the part of the length of their joint."""
+@pytest.mark.parametrize(("slid", "turned"), [(0, 0), (0.3, 0), (-0.4, 0), (0.3, 0.2), (-0.3, -0.2), (0.9, 0)])
+def test_bearing_length_is_the_overlap_of_blocks_that_slide(slid: float, turned: float) -> None:
+    """One block slides on another of its length; when it also rocks on its corner, that corner's end keeps its length.
+
+    The lower side of the other block keeps the length of its joint with the ground.
+    """
     search = finite_system(dry([rectangle(0, 0, 1, 0.5), rectangle(0, 0.5, 1, 0.5)])).contacts
     assert search is not None
+    arm = np.array([0.5 if turned > 0 else -0.5, 0.25])  # from the corner that it rocks on to the centroid
+    cosine, sine = np.cos(turned), np.sin(turned)
+    swung = np.array([cosine * arm[0] - sine * arm[1], sine * arm[0] + cosine * arm[1]]) - arm
     motion = np.zeros(9)
-    motion[3:6] = slid, 0.001, turned
+    motion[3:6] = slid + swung[0] * (turned != 0), swung[1] * (turned != 0), turned
     contacts = find_contacts(search.outline, motion, 0.01)
-    between = contacts.chosen(contacts.joint >= 0)
-    upper = (search.outline.blocks.owner[between.ends[:, 4:].astype(np.int64)] == 1).any(axis=1)
-    left = length_left(search.outline, between, motion)
-    assert upper.any()
-    assert left[upper] == pytest.approx(np.full(upper.sum(), 1 - abs(slid)), abs=1e-3)
-    assert left[~upper] == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize(("spread", "noted"), [(0.05, False), (0.07, True)])
-def test_short_bearings_of_joints_that_crush_are_noted(spread: float, noted: bool) -> None:
-    """A lintel on pads of 0.3 m, of which one is pulled out: .25 or .23 m of it are left, and the model knows of .3."""
-    grounds = [rectangle(-0.2, -0.5, 0.5, 0.5), rectangle(1.7, -0.5, 0.5, 0.5)]
-    for strength in (6e5, None):
-        scene = build_scene(
-            "lintel",
-            [rectangle(0, 0, 2, 0.3)],
-            thickness=0.3,
-            block=BlockMaterial(2000.0),
-            joint=JointMaterial(0.6, elasticity=Stiffness(1e9, 5e8), compressive_strength=strength),
-            grounds=grounds,
-            load=Load(live=(Settlement(box=((1.6, -0.6), (2.3, 0.01)), by=(spread, 0.0)),)),
-        )
-        message = dem_dynamic(scene, 0.1, displacements="finite").message
-        assert ("a joint bears on 77 % of its initial length" in message) == (noted and strength is not None)
+    joined = contacts.chosen(contacts.joint >= 0)
+    opening, length = jumps(search.outline, joined, motion)[0], bearing_length(search.outline, joined)
+    upper = (search.outline.blocks.owner[joined.ends[:, 4:].astype(np.int64)] == 1).any(axis=1)
+    touching = upper & (np.abs(opening) < 1e-9)
+    assert touching.sum() == (1 if turned else 2)
+    assert length[touching] == pytest.approx(1 - abs(slid))
+    assert length[~upper] == pytest.approx(1.0)
 
 
 def test_copied_state_keeps_its_own_contacts() -> None:

@@ -1,4 +1,5 @@
-"""Contacts whose area grows as blocks slide over each other: the added springs start without force."""
+"""Contacts whose area changes as blocks slide over each other: added springs start without force, lost ones take theirs
+along."""
 
 import math
 
@@ -40,6 +41,17 @@ def test_growing_contact_keeps_its_force(share: float, closure: dict[str, object
     assert 0 <= lost <= (1 - share) * joint * (1 + 1e-9)
     if not closure:  # a share s of the springs stored s E; spread over all of them, s² E is left
         assert lost == pytest.approx(share * (1 - share) * joint, rel=1e-9, abs=1e-9 * joint)
+
+
+def test_area_that_is_lost_takes_its_force_and_its_energy() -> None:
+    """A third of the area is lost: the traction of the rest stays, and a third of the energy of a half is booked."""
+    system = finite_system(courses([[1, 1], [0.5, 1, 0.5]], joint={**STIFF, "compressive_strength": 1e8}))
+    run, state = Run(system), State.at_rest(system)
+    run.hold(state, 0.3, 3000)
+    before, energy = run.forces(state), run.ledger(state).joint
+    lost = _spread(run.interface, state, np.full(len(before[0]), 1.5))
+    assert np.array_equal(run.forces(state), before)
+    assert lost == pytest.approx(energy / 2)
 
 
 @pytest.mark.parametrize("closure", [{}, {"closure": {"growth": 1e6, "stiffest": 2e10}}])

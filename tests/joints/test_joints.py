@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength, wall_rule
-from runningbond.joints.points import trapezoids
 from runningbond.scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
 from tests.walls import panel
 
@@ -27,14 +26,6 @@ def test_rules_integrate_polynomials_exactly(n: int) -> None:
 def test_lobatto_points_include_joint_ends() -> None:
     assert lobatto(2).nodes.tolist() == [-1, 1]
     assert lobatto(3).weights == pytest.approx([1 / 3, 4 / 3, 1 / 3])
-
-
-@pytest.mark.parametrize("parts", [1, 2, 5])
-def test_trapezoids_are_exact_for_linear_functions(parts: int) -> None:
-    """Exact to degree 1; ∫ x² is too large by (2 / parts)³ / 6 on each part."""
-    rule = trapezoids(parts)
-    exact = [2.0, 0.0, 2 / 3 + parts * (2 / parts) ** 3 / 6]
-    assert [rule.weights @ rule.nodes**power for power in range(3)] == pytest.approx(exact, abs=1e-15)
 
 
 def test_points_represent_the_whole_joint_and_lie_on_it() -> None:
@@ -115,7 +106,7 @@ def test_work_of_admissible_forces_does_not_exceed_dissipation(
     assert (work <= strength.dissipation(np.array([opening]), np.array([slip])) + 1e-9 * (1 + abs(work))).all()
 
 
-@pytest.mark.parametrize(("parts", "within"), [(1, 0.03), (2, 0.05), (3, 0.05), (4, 0.055)])
+@pytest.mark.parametrize(("parts", "within"), [(1, 0.03), (2, 0.02), (3, 0.02), (4, 0.02), (8, 0.01)])
 def test_error_of_crushed_points_in_bending_is_as_reported(parts: int, within: float) -> None:
     """Crushed over a share s from one end, against s (1 - s) / 2 for a continuous joint (`crushing_note`)."""
     rule = wall_rule(panel(joint__compressive_strength=1e7), parts)
