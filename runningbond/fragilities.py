@@ -1,8 +1,10 @@
 """Fragility: the probability that ground motions of a given intensity bring a wall down, from a set of records."""
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from os.path import normpath
 from pathlib import Path
 from typing import Any
 
@@ -96,7 +98,7 @@ def fragility(
     Raises
     ------
     SceneError
-        If the wall has no record, or fewer than two records bring it down.
+        If the wall has no record, a record is named twice, or fewer than two records bring it down.
     """
     check_wall(wall)
     if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
@@ -106,6 +108,9 @@ def fragility(
     if isinstance(records, (str, bytes)) or not isinstance(records, Iterable):
         raise SceneError("records", "must be a list of files", records)
     names = [str(record) for record in records]
+    for name, times in Counter(map(normpath, names)).items():
+        if times > 1:
+            raise SceneError("records", f"must name each record once, and name {Path(name).name} {times} times")
     runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)
     levels: dict[bool, list[float]] = {True: [], False: []}  # by whether the wall fell
     for name, *answer in zip(names, *(runs[key] for key in ("status", "multiplier", "lower", "upper")), strict=True):
@@ -135,7 +140,8 @@ def interval_of_median(level: Array, stands: Mask, seed: int, draws: int) -> tup
 
     With n falls, bootstrap medians scatter by √((n−1)/n) times the scatter of medians of independent samples, and as if
     the dispersion were known. The interval is therefore widened by √(n/(n−1)) and by the ratio of quantiles of
-    Student's distribution to the normal one, which makes it exact for n log-normal levels.
+    Student's distribution to the normal one, which makes it nearly exact for four or more log-normal levels. Of two or
+    three levels resampled medians take few values, and the interval contains the median in 85 to 90 % of cases.
     """
     again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
     medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]

@@ -46,7 +46,7 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
         rows = _measured(included, out, "stability")
     except Stopped:
         kept = sum(is_complete(each, out) for each in studies)
-        return _interrupted(f"{kept} of {len(studies)} experiments are kept in {out}")
+        return _interrupted(f"{kept} of {len(studies)} experiments, and what is measured of others, are kept in {out}")
     with locked(out):
         written = write_page("stability", page(rows, out), out, "stability")
     print_table(summary(rows))

@@ -130,7 +130,7 @@ def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:
             ncols=len(names),
             frameon=False,
             fontsize=8,
-            title="large: median over walls",
+            title="large: median over all walls, or over those told beside it",
             title_fontsize=8,
         )
 
@@ -139,6 +139,7 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
     by_rung: dict[str, list[Prediction]] = {}
     for each in scored:
         by_rung.setdefault(each.rung.name, []).append(each)
+    walls = len({each.wall.name for each in scored})
     for name, own in by_rung.items():
         errors = [max(abs(each.error or 0.0), LEAST_ERROR) for each in own]
         model = own[0].rung.model
@@ -148,9 +149,11 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
             continue
         seconds = [max(each.outcome.seconds if each.outcome else 0.0, LEAST_SECONDS) for each in own]
         axes.plot(seconds, errors, model.marker, color=model.colour, ms=4, alpha=0.45, ls="none")
-        axes.plot(
-            median(seconds), median(errors), model.marker, color=model.colour, ms=10, mec="black", ls="none", label=name
-        )
+        middle = median(seconds), median(errors)
+        axes.plot(*middle, model.marker, color=model.colour, ms=10, mec="black", ls="none", label=name)
+        if len(own) < walls:  # not comparable with medians over all walls
+            some = f"{len(own)} of {walls} walls"
+            axes.annotate(some, middle, (7, 4), textcoords="offset points", fontsize=7, color=model.colour)
     _in_whole_decades(axes)
     if better := errors_by_hand(scored):
         _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both,\nwall by wall", width=1.6)

@@ -112,6 +112,8 @@ def _bend(axes: "Axes", moved: Array, load: Array) -> None:
     linear = float(10.0 ** np.ceil(np.log10(half)))
     axes.set_xscale("symlog", linthresh=linear)
     axes.xaxis.set_major_formatter("{x:g}")
+    if moved.max() < 10 * linear:  # otherwise 0 and one power of ten would be the only numbers
+        axes.xaxis.set_major_locator(SymmetricalLogLocator(base=10, linthresh=linear, subs=[1, 2, 3, 5]))
     axes.xaxis.set_minor_locator(SymmetricalLogLocator(base=10, linthresh=linear, subs=range(2, 10)))
     axes.axvspan(min(0.0, moved.min()), linear, color="0.93", lw=0, zorder=0)
     for word, place, align in (("linear", -4, "right"), ("logarithmic", 4, "left")):

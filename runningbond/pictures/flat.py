@@ -145,7 +145,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
     key = mechanism_key([shape])
     lines, largest, beside = resultants(shape, outcome)
     if len(lines) and mechanism and usual_side(scene) > MIN_BLOCK * metres_of_point(shape.extent, (WIDTH, TALLEST)):
-        label = f"force ≤ {readable(largest, 'N')}" + (f", {beside} too far off" if beside else "")
+        label = f"force ≤ {readable(largest, 'N')}" + (f", {beside} far beside their joints" if beside else "")
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=label))
     else:
         lines = lines[:0]

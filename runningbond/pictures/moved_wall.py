@@ -19,8 +19,9 @@ from .ties import draw_ties
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MAX_DISTANCE, MARGIN = 0.75, 0.04
-"""Distance beside and above a wall up to which fallen blocks are shown, and margin around all, in sizes of the wall."""
+MAX_DISTANCE, MARGIN = 1.0, 0.04
+"""Distance beside and above a wall up to which fallen blocks are shown, in its larger sides, and margin around all, in
+sizes of the wall."""
 
 NEGLIGIBLE = 0.1
 """Motion, relative to the contact tolerance, up to which a wall is drawn without enlargement."""
@@ -62,7 +63,7 @@ def extent_around(shapes: list[DeformedShape]) -> Extent:
     """Extent of all shapes of a wall, except for blocks that have moved far away from it."""
     scene = shapes[0].scene
     (left, bottom), (right, top) = scene.blocks.extent(scene.wall)
-    far = MAX_DISTANCE * scene.size
+    far = MAX_DISTANCE * max(right - left, top - bottom)
     placed = np.concatenate([shape.placed for shape in shapes])
     low = np.maximum(np.minimum([left, bottom], placed.min(axis=0)), [left - far, bottom])
     high = np.minimum(np.maximum([right, top], placed.max(axis=0)), [right + far, top + far])

@@ -132,8 +132,8 @@ def draw_beam(sketch: Sketch, shape: DeformedShape) -> None:
 
 def draw_scale(sketch: Sketch, shape: DeformedShape) -> None:
     """Draw a scale bar of a round length below everything else."""
-    (left, base), (right, _) = shape.scene.blocks.extent(shape.scene.wall)
-    length, a = round_length((right - left) / 4), sketch.a
+    (left, base), (right, top) = shape.scene.blocks.extent(shape.scene.wall)
+    length, a = round_length(max((right - left) / 4, (top - base) / 16)), sketch.a
     lowest = [(sketch.room() or (0.0, 0.0, base))[2], float(shape.placed[:, 1].min()), base - DEPTH * a]
     ground = [float(mark.points[:, 1].min()) for mark in sketch.marks if mark.name == "support"]
     level = min(*lowest, *ground) - 0.8 * a

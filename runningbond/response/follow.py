@@ -50,7 +50,8 @@ PART = 0.9
 """Time step relative to the stable one: the energy error of an impact grows with the square of the step."""
 
 SHAPE = 0.1
-"""Largest corner displacement, relative to the size of the wall, at the moment whose shape a response keeps."""
+"""Largest corner displacement, relative to the size of the wall, at the moment whose shape a response keeps; or largest
+growth of it since the wall last swung back, if it was nowhere as small any more."""
 
 AFTER = 0.5
 """Time [s] for which a wall that falls is recorded after its first block has fallen."""
@@ -110,6 +111,7 @@ class _Log:
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
         self._blocks, self._far = rest.scene.blocks, SHAPE * rest.scene.size
         self.shape = np.zeros((len(self._blocks), 3))
+        self._lowest = self._highest = 0.0  # farthest corner at the last turn, and the most since then [m]
         self._motion, self._places, self._energies = state.motion.copy(), self._where(state), self._energy(state)
         self._momentum, self._time = ground.momentum(state), state.time
         self.rows: list[_Row] = []
@@ -122,9 +124,7 @@ class _Log:
         system, now = self._run.system, self.ground.time(state)
         moved = system.motion_of_bodies(state.motion - self._motion)
         fell = self._movable & ((-moved[:, 1] > self._size / 2) | (np.abs(moved[:, 2]) > TURNED))
-        shape = system.motion_of_blocks(state.motion - self._motion)
-        if np.hypot(*carried(self._blocks, self._blocks.owner, self._blocks.vertices, shape).T).max() <= self._far:
-            self.shape = shape
+        self._keep_shape(system.motion_of_blocks(state.motion - self._motion))
         self.first += [block for block in dict.fromkeys(system.owner[fell].tolist()) if block not in self.first]
         momentum, span = self.ground.momentum(state), state.time - self._time
         pushed = (momentum - self._momentum) / span if span else np.zeros(2)
@@ -134,6 +134,15 @@ class _Log:
         energy = self._energy(state) - self._energies
         self._gone += float(np.abs(energy[:2] - (self.rows[-1].energy[:2] if self.rows else 0.0)).sum())
         self.rows.append(_Row(now, ground, places, drift, pushed - self._dead, energy, len(self.first)))
+
+    def _keep_shape(self, shape: Array) -> None:
+        """Keep a shape ``(nb, 3)`` as the wall's way to fall unless it has moved too far."""
+        farthest = float(np.hypot(*carried(self._blocks, self._blocks.owner, self._blocks.vertices, shape).T).max())
+        if farthest < max(self._lowest, self._highest - self._far / 2):  # it swings back
+            self._lowest = self._highest = farthest
+        self._highest = max(self._highest, farthest)
+        if farthest <= max(self._far, self._lowest + self._far):
+            self.shape = shape
 
     @property
     def is_lost(self) -> bool:

@@ -27,6 +27,7 @@ from runningbond.limit import limit
 from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS
 from runningbond.results import Outcome
+from runningbond.results.outcome import number
 from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness
 from tests.at_length import at_length
 from tests.walls import content, courses, panel, write_toml
@@ -495,6 +496,23 @@ def test_blocks_that_may_crack_need_fem() -> None:
     advice = advise(glued(block__young=1e10, inner_joint=inner))
     assert climbed(advice) == ["homog", "limit", "fem"]
     assert "crack" in advice.rungs[1].next.reason
+
+
+def test_blocks_without_a_modulus_crack_only_along_their_axes() -> None:
+    """`fem` refuses blocks without Young's modulus, and advice ended "undecided; no other model answers"."""
+    inner = {"friction": 0.6, "cohesion": 1e5, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    advice = advise(courses([[1, 1], [0.5, 1, 0.5]], inner_joint=inner, **STIFF))
+    assert advice.outcome().status == "collapse"
+    assert "fem" not in climbed(advice)
+    assert advice.outcome().message.endswith("; blocks crack only on their axes")
+
+
+def test_bound_is_told_where_no_other_model_answers() -> None:
+    """Blocks that crack need stiffness, which the joints of this wall do not have."""
+    inner = {"friction": 0.6, "cohesion": 1e5, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    advice = advise(courses([[1, 1], [0.5, 1, 0.5]], block__young=1e10, inner_joint=inner))
+    assert advice.known.bound is not None
+    assert advice.outcome().message.endswith(f"; above {number(advice.known.bound)} nothing stands")
 
 
 def test_blocks_of_a_tied_wall_crack_only_along_their_axes() -> None:

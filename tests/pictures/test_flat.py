@@ -174,7 +174,7 @@ def test_resultants_of_tensile_joints_lie_outside_joints() -> None:
         couple = replace(outcome, force=np.array([[pull, 0.0], [-100.0, 30.0], [-50.0, 0.0], [-50.0, 0.0]]))
         lines, _, beside = resultants(shape, couple)
         assert (len(lines), beside) == (1, 1)
-        assert "1 too far off" in texts(figure_of(scene, couple))
+        assert "1 far beside their joints" in texts(figure_of(scene, couple))
 
 
 def test_thin_course_does_not_change_line_width() -> None:

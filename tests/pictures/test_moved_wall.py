@@ -44,8 +44,8 @@ def test_small_motion_is_enlarged_and_distant_blocks_are_left_out() -> None:
     assert moved_shape(scene, 0 * motion).scale == 1.0
     motion[0, 0] = 50.0
     left, right, _, _ = extent_around([moved_shape(scene, motion)])
-    (start, _), (end, _) = scene.blocks.extent(scene.wall)
-    assert right - end < (MAX_DISTANCE + 0.1) * scene.size
+    (start, bottom), (end, top) = scene.blocks.extent(scene.wall)
+    assert right - end < MAX_DISTANCE * max(end - start, top - bottom) + 0.1 * scene.size
     assert start - left < 0.1 * scene.size
 
 

@@ -67,6 +67,16 @@ def test_wall_without_a_record_has_no_fragility() -> None:
         rb.fragility(rb.read("panel-01"), ["a.csv"], "dem-dynamic")
 
 
+def test_each_record_counts_once(tmp_path: Path) -> None:
+    """A record named twice counted as two samples that agree, and the interval of the median had no width."""
+    (tmp_path / "a.csv").write_text("0 0\n1 1\n2 0\n")
+    wall = rb.read("panel-01").with_(
+        {"load.history": {"file": str(tmp_path / "a.csv"), "quantity": "g"}, "load.live": None}
+    )
+    with pytest.raises(rb.SceneError, match="records: must name each record once, and name a.csv 2 times"):
+        rb.fragility(wall, [str(tmp_path / "a.csv"), str(tmp_path / "." / "a.csv")], "dem-dynamic")
+
+
 def test_records_without_collapse_count_as_lower_bounds() -> None:
     """A log-normal sample censored at a level returns its median and dispersion; dropping the rest does not."""
     n, median, dispersion = 400, 0.5, 0.4

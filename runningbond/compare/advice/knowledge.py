@@ -62,9 +62,11 @@ class Knowledge:
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
-        may_crack, tied = self.scene.inner_joint is not None, len(self.scene.ties) > 0
-        self.cracks = may_crack and not tied  # blocks may crack anywhere,
-        self.halves = may_crack and tied  # or only along their axes, because ties cannot be attached to triangles
+        may_crack, scene = self.scene.inner_joint is not None, self.scene
+        moduli = [scene.block_materials[k].young for k in np.unique(scene.material_of_block[~scene.fixed])]
+        # Blocks may crack anywhere, or only along their axes: triangles need a modulus, and cannot hold ties.
+        self.cracks = may_crack and not len(scene.ties) and None not in moduli
+        self.halves = may_crack and not self.cracks
         materials = self.scene.materials_of_joints
         self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
