@@ -11,8 +11,8 @@ from .points import JointPoints, Rule, joint_points, lobatto
 from .stiffness import joint_stiffness, stiffest
 
 BETWEEN = 9
-"""Number of points on a joint that softens, crushes or closes: with 5 points, a toe that crushes carries 2.4 % more,
-with 17 points 0.4 % less (SW.200.1, docs/laboratory.md)."""
+"""Number of points on a joint that softens, crushes or closes: with 5 points, a toe that crushes carries 2.3 % more,
+with 17 points 0.3 % less (SW.200.1, docs/laboratory.md)."""
 
 MIN_POINTS = 3
 """Least number of points on a part of such a joint: with two, its rotational stiffness is that of its two ends."""
