@@ -41,10 +41,10 @@ class Spaces:
         inner, of_a = contacts.inwards == 0, contacts.ends[:, 2] == 1
         point = np.where(inner, contacts.ends[:, 0].astype(np.int64) - len(blocks.outline.radius), 0)
         following, previous = np.where(inner, blocks.gap[[point, point - 1]], 0.0)
-        along = _along(blocks, contacts, f, at)
+        along = blocks.outline.along(f, at, contacts.motion)
         on = np.where(of_a, e, f)
         near_end, far_end = blocks.sides.inset[blocks.sides.ends[on]].T
-        place = np.where(of_a, _along(blocks, contacts, e, at), along)
+        place = np.where(of_a, blocks.outline.along(e, at, contacts.motion), along)
         inside = np.minimum(place - near_end, blocks.outline.length[on] - far_end - place)
         half = blocks.points.half[point]
         carries = (contacts.joint >= 0) & (~inner | (inside > part * half))
@@ -69,13 +69,6 @@ class Spaces:
         wide[order[:1]] += self.before[order[:1]] / 2
         wide[order[-1:]] += self.after[order[-1:]] / 2
         return wide
-
-
-def _along(blocks: NodeOutline, contacts: Contacts, side: Indices, at: Array) -> Array:
-    """Distance ``(n,)`` [m] of points ``(n, 2)`` from the starts of sides ``(n,)``, along these."""
-    corners, after = blocks.outline.corners(contacts.motion), blocks.outline.blocks.successor
-    run = (corners[after[side]] - corners[side]) / blocks.outline.length[side, None]
-    return np.asarray(((at - corners[side]) * run).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +118,16 @@ class BearingAreas:
             nearest[here], off[here] = own[distance.argmin(axis=1)], distance.min(axis=1)
         return nearest, off
 
+    def initial(self, contacts: Contacts) -> Contacts:
+        """Contacts of which those of joints have the area of the undeformed wall."""
+        return replace(contacts, area=self._of_undeformed(contacts, self.undeformed, contacts.area))
+
+    def _of_undeformed(self, contacts: Contacts, values: Array, other: Array | float) -> Array:
+        """Values ``(n,)`` at contacts from those of the undeformed wall; `other` at contacts that it did not have."""
+        at = position_of(self.contacts.key, contacts.key)
+        known = (at >= 0) & (np.append(self.contacts.joint, -1)[at] == contacts.joint) & (contacts.joint >= 0)
+        return np.where(known, np.append(values, 0.0)[at], other)
+
     def present(self, contacts: Contacts, at: Array) -> Contacts:
         """Contacts at positions ``(n, 2)`` [m] with areas that add up to the overlap, as in `ContactSearch.bearing`.
 
@@ -133,12 +136,10 @@ class BearingAreas:
         """
         spaces = Spaces.of(self.blocks, contacts, at, LOST)
         wide = spaces.widths(contacts.joint)
-        kept = position_of(self.contacts.key, contacts.key)
-        known = (kept >= 0) & (np.append(self.contacts.joint, -1)[kept] == contacts.joint)
         trapezoid = wide * _thickness(self.blocks, contacts)
         whole = np.append(self.blocks.outline.joints.length, np.inf)[contacts.joint]
         overlap = np.clip(bearing_length(self.blocks.outline, contacts) / whole, 0.0, 1.0)
-        excess = np.where(known, overlap * np.append(self._excess, 0.0)[kept], 0.0)
+        excess = overlap * self._of_undeformed(contacts, self._excess, 0.0)
         area = np.maximum(trapezoid + excess, trapezoid / 2)
         left = spaces.carries | (contacts.joint < 0)
         spare = (spaces.inside - spaces.half)[spaces.carries].min(initial=np.inf)

@@ -55,16 +55,18 @@ class DeformableContacts:
 
     def __init__(self, blocks: NodeOutline) -> None:
         self.blocks, self.outline, self._materials = blocks, blocks.outline, ContactMaterials(blocks.scene)
-        self._of_joints: tuple[Indices, Indices, Array] = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
         still = np.zeros(len(blocks.wall.mass))
-        found = self.find(still, self.outline.margin)
+        found = self._near(still, self.outline.margin)
         self._areas = BearingAreas(blocks, found, self._gathered(found, still).contact[:, :2])
-        self._of_joints = found.key, found.joint, self._areas.undeformed
         self.undeformed = replace(found, area=self._areas.undeformed, glued=found.joint >= 0)
         if self._materials.law(found).law.closed is not None:
             self.undeformed = replace(self.undeformed, margin=self.bearing(found).margin)
 
     def find(self, motion: Array, margin: float) -> Contacts:
+        """Contacts nearer than a margin [m] after a motion ``(nd,)``, with their areas on the undeformed wall."""
+        return self._areas.initial(self._near(motion, margin))
+
+    def _near(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then points inside them."""
         rigid = self.blocks.rigid(motion)
         ends = find_contacts(self.outline, rigid, margin)
@@ -84,10 +86,6 @@ class DeformableContacts:
             np.concatenate([ends.joint, inner.joint]),
             np.concatenate([ends.glued, inner.glued]),
         )
-        key, joint, area = self._of_joints
-        at = position_of(key, contacts.key)
-        known = (at >= 0) & (np.append(joint, -1)[at] == contacts.joint) & (contacts.joint >= 0)
-        contacts = replace(contacts, area=np.where(known, np.append(area, 0.0)[at], contacts.area))
         return self._materials.side_by_side(contacts)
 
     def bearing(self, contacts: Contacts) -> Contacts:

@@ -141,7 +141,7 @@ def interval_of_median(level: Array, stands: Mask, seed: int, draws: int) -> tup
     With n falls, bootstrap medians scatter by √((n−1)/n) times the scatter of medians of independent samples, and as if
     the dispersion were known. The interval is therefore widened by √(n/(n−1)) and by the ratio of quantiles of
     Student's distribution to the normal one, which makes it nearly exact for four or more log-normal levels. Of two or
-    three levels resampled medians take few values, and the interval contains the median in 85 to 90 % of cases.
+    three levels resampled medians take few values, and the interval contains the median somewhat less often.
     """
     again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
     medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]

@@ -123,6 +123,12 @@ class Outline:
         """Positions of the corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
         return self.points(self.blocks.owner, self.blocks.vertices, motion)
 
+    def along(self, side: Indices, at: Array, motion: Array) -> Array:
+        """Distance ``(n,)`` [m] of points ``(n, 2)`` in space from the starts of sides ``(n,)``, along these."""
+        corners = self.corners(motion)
+        run = (corners[self.blocks.successor[side]] - corners[side]) / self.length[side, None]
+        return np.asarray(((at - corners[side]) * run).sum(axis=1))
+
     def points(self, block: Indices, at: Array, motion: Array) -> Array:
         """Positions ``(n, 2)`` [m], after a motion ``(3 nb,)``, of points of blocks given on the undeformed wall."""
         cosine, sine, x, y = self.placed(motion).blocks[:, block]

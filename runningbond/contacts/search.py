@@ -298,10 +298,8 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, lean: Array,
 
 def _along(outline: Outline, e: Indices, f: Indices, motion: Array) -> tuple[Array, Array]:
     """Positions ``(n,)`` [m], along sides f, of the ends of sides e near the start and the end of f, in a motion."""
-    corners, after = outline.corners(motion), outline.blocks.successor
-    along = (corners[after[f]] - corners[f]) / outline.length[f, None]
-    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
-    return first, last
+    corners = outline.corners(motion)
+    return outline.along(f, corners[outline.blocks.successor[e]], motion), outline.along(f, corners[e], motion)
 
 
 def _overlap(outline: Outline, e: Indices, f: Indices, lean: Array, motion: Array) -> Array:

@@ -131,10 +131,11 @@ class ContactUpdate:
         share = np.zeros(len(kept))  # area that a point had before, relative to its area
         share[moved] = 1.0
         share[kept >= 0] = interface.area[kept[kept >= 0]] / renewed.area[kept >= 0]
-        # Where a block slides off its neighbour, contacts only grow by what their neighbours lose, pressed as they are.
-        length, less = bearing_length(search.outline, contacts), np.zeros(len(contacts) + 1, dtype=bool)
-        less[:-1][still] = length[still] <= bearing_length(search.outline, before)[same[still]] * (1 + SAME_LENGTH)
-        share[less[new_ends]] = np.maximum(1.0, share[less[new_ends]])
+        if crushes:
+            # Where a block slides off its neighbour, contacts grow by what their neighbours lose, pressed as they are.
+            length, less = bearing_length(search.outline, contacts), np.zeros(len(contacts) + 1, dtype=bool)
+            less[:-1][still] = length[still] <= bearing_length(search.outline, before)[same[still]] * (1 + SAME_LENGTH)
+            share[less[new_ends]] = np.maximum(1.0, share[less[new_ends]])
         state.friction += _spread(renewed, state, share)
         return renewed
 

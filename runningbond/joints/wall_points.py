@@ -72,7 +72,7 @@ def ends_note(scene: Scene, points: JointPoints) -> str:
 def spread_rule(parts: int = 1) -> Rule:
     """Points of `wall_rule` for joints that soften, crush or close: on parts, at the ends as near as on a whole joint.
 
-    With wider spaces there, joints crack in larger jumps and carry more: by 3 % with 5 points on each of two parts.
+    With wider spaces there, joints crack in larger jumps and carry more.
     """
     fewest = range(MIN_POINTS, BETWEEN)
     return next((rule for rule in map(lobatto, fewest) if _end_space(rule) <= parts * _end_space()), lobatto(BETWEEN))
