@@ -158,8 +158,8 @@ class Lead(ABC):
         """Note on the other side of a curve ``(n, 2)``; may be empty."""
         return ""
 
-    def remedy(self, curve: Array) -> str:
-        """Advice if the answers of a curve ``(n, 2)`` at two speeds differ; may be empty."""
+    def remedy(self, fast: Traverse, slow: Traverse, tolerance: float) -> str:
+        """Advice if the answers at two speeds differ by more than a relative tolerance; may be empty."""
         return ""
 
     def fall(self, traverse: Traverse) -> str:

@@ -267,7 +267,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         bounds = (None, most) if falls else (lower, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if spread > tolerance and not _rate(lead.scene):
-        why = joined("another speed changes it by more than the tolerance", lead.remedy(outcome.curve))
+        remedy = lead.remedy(traverses[-2], traverse, tolerance)
+        why = joined("another speed changes it by more than the tolerance", remedy)
         if traverse.fall is not None:
             why = f"{lead.fall(traverse)}, up to which it changes by more than the tolerance"
         return replace(outcome, message=f"no answer: {why}; {what}")

@@ -15,7 +15,7 @@ from runningbond.results.outcome import number, two_digits
 from runningbond.scene import Array, Indices, Scene
 
 from .lead import ROWS, STRIDE, Lead
-from .path_curve import LITTLE, LOSS
+from .path_curve import FINAL_PART, LITTLE, LOSS
 from .peaks import Peaks
 from .run import CALMING, MOVING, Run
 from .state import State
@@ -200,12 +200,26 @@ class Push(Lead):
         peak = f"{number(float(load[first]))} at {two_digits(abs(moved[first]))} m"
         return f"the multiplier had fallen from {peak} to {low} before"
 
-    def remedy(self, curve: Array) -> str:
-        """Advice to shorten the path if only a few rows at its beginning resolve the peak."""
-        peak = abs(curve[curve[:, 1].argmax(), 0])
-        if peak > EARLY_PEAK * np.abs(curve[:, 0]).max():
+    def remedy(self, fast: Traverse, slow: Traverse, tolerance: float) -> str:
+        """Advice to shorten the path: to where both speeds agree, or if only its first few rows show the peak."""
+        curve = self.onward(slow.curve)
+        peak, end = abs(curve[curve[:, 1].argmax(), 0]), np.abs(curve[:, 0]).max()
+        if peak <= EARLY_PEAK * end:
+            return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
+        agreed = self._agreed(self.onward(fast.curve), curve, tolerance)
+        if agreed == 0 or curve[agreed, 0] > (1 - EARLY_PEAK) * end:
             return ""
-        return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
+        most = number(float(curve[: agreed + 1, 1].max()))
+        return f"up to {two_digits(curve[agreed, 0])} m it is {most} at both: a shorter distance answers"
+
+    @staticmethod
+    def _agreed(fast: Array, slow: Array, tolerance: float) -> int:
+        """Farthest row of a curve ``(n, 2)`` with a largest load that another speed and a longer path hardly change."""
+        (other, before), (at, force) = np.maximum.accumulate(fast).T, np.maximum.accumulate(slow).T
+        changed = np.abs(np.interp(at, other, before) - force)
+        grown = force - np.interp((1 - FINAL_PART) * at, at, force)
+        alike = np.maximum(changed, grown) <= tolerance * force
+        return int(np.flatnonzero(alike & (force > 0) & (at > EARLY_PEAK * at[-1]))[-1:].sum())
 
     def fall(self, traverse: Traverse) -> str:
         """Note on how a wall has fallen at the end of a traverse."""

@@ -221,14 +221,29 @@ def test_unreachable_distance_does_not_change_push() -> None:
     brackets(far, WIDTH / HEIGHT, 0.01)
 
 
-@pytest.mark.parametrize(("peak", "said"), [(8.9e-5, "the peak is at 8.9e-05 m: a shorter distance"), (0.01, "")])
-def test_message_asks_for_shorter_distance_if_peak_is_at_start(peak: float, said: str) -> None:
+def pushed_along(curve: Array) -> Traverse:
+    rows = [TraverseRow(moved, force, np.empty(0), np.empty(0), (0.0, 0.0), ()) for moved, force in curve.tolist()]
+    return Traverse(cast(State, None), np.empty(0), moves=True, rows=rows)
+
+
+@pytest.mark.parametrize(
+    ("peak", "late", "said"),
+    [
+        (8.9e-5, 0.3, "the peak is at 8.9e-05 m: a shorter distance"),
+        (0.01, 0.3, ""),
+        (0.01, 0.5, "up to 0.15 m it is 0.4000 at both: a shorter distance"),
+    ],
+)
+def test_message_asks_for_shorter_distance_if_peak_is_at_start_or_speeds_part(
+    peak: float, late: float, said: str
+) -> None:
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
+    curve = np.array([[0.0, 0.0], [peak, 0.4], [0.1, 0.3], [0.15, 0.3], [0.2, 0.3]])
     for side in (1.0, -1.0):
-        curve = np.array([[0.0, 0.0], [side * peak, 0.4], [side * 0.1, 0.3], [side * 0.2, 0.0]])
-        assert lead.remedy(curve).startswith(said)
-        assert bool(lead.remedy(curve)) == bool(said)
+        fast, slow = (pushed_along(np.vstack([curve[:-1], [0.2, end]]) * (side, 1.0)) for end in (0.3, late))
+        assert lead.remedy(fast, slow, 0.01).startswith(said)
+        assert bool(lead.remedy(fast, slow, 0.01)) == bool(said)
 
 
 def test_message_reports_peak_before_wall_lands_on_ground() -> None:
