@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 LABEL_HEIGHT = 0.08
 """Space kept for the label below the lowest level in charts of settlements, relative to the height above that level."""
 
+MARKER_SPACING = 0.015
+"""Least distance of the dots of a curve, relative to the diagonal of the chart: hundreds of rows would merge."""
+
 LINEAR_SHARE = 0.04
 """Displacement at half the peak load, relative to the axis range, below which the axis is made logarithmic."""
 
@@ -82,7 +85,8 @@ def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
     rests = _rests(outcome) | _is_in_motion(scene, outcome)
     held, way = ("stands", ".") if scene.history else ("at rest", "-" if _is_in_motion(scene, outcome) else ".-")
-    axes.plot(moved[rests], load[rests], way, color=CURVE, lw=1.2, ms=4, label=held)
+    apart = None if scene.history else MARKER_SPACING  # the curve has no line between the scales of a record
+    axes.plot(moved[rests], load[rests], way, color=CURVE, lw=1.2, ms=4, markevery=apart, label=held)
     if not rests.all():
         last = np.flatnonzero(~rests)[0]
         if not scene.history:
