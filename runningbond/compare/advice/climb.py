@@ -13,7 +13,6 @@ import numpy as np
 from runningbond.draws import Scatter
 from runningbond.models import check_tolerance, run_model
 from runningbond.results import Outcome
-from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError
 
 from ..table import bracket
@@ -93,9 +92,7 @@ class Advice:
         """The answer: the bracket of the last rung that has one, and its meaning in the message."""
         known, last = self.known, self.rungs[-1]
         answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
-        message = known.meaning() or last.next.reason
-        if known.answer is None and known.bound is not None:
-            message += f"; above {number(known.bound)} nothing stands"
+        message = known.meaning() or last.next.reason + known.above
         if last.outcome is None and known.answer is not None:
             finite = last.model.endswith("finite")
             large = (known.displacement or 0.0) > known.tolerance

@@ -172,6 +172,11 @@ class Knowledge:
         at = pace(self.scene, self.tolerance, self.outcomes, self.drawn)
         return estimate(model, self.scene, self.tolerance, at, advised=True, draws=draws)
 
+    @property
+    def above(self) -> str:
+        """What the upper bound says, as the end of a sentence; empty without one."""
+        return "" if self.bound is None else f"; above {number(self.bound)} nothing stands"
+
     def meaning(self) -> str:
         """Meaning of the bracket of the answer, in words; empty if there is no answer."""
         if self.answer is None:
@@ -180,16 +185,15 @@ class Knowledge:
 
     def _meaning(self, answer: Outcome) -> str:
         """Meaning of the bracket of an answer, in words."""
-        above = "" if self.bound is None else f"; above {number(self.bound)} nothing stands"
         if self.evidence == "proof":
             return "forces and a mechanism prove it, whether or not sliding joints dilate"
         if self.evidence == "finite":
-            return answer.message + (above and f"{above} at small displacements")
+            return answer.message + (self.above and f"{self.above} at small displacements")
         if self.evidence == "certificate":
             seen = ", and a history agrees" if self.draws else ""
             if answer.upper is None:
                 seen = ", but a history locks: it takes other forces in joints than the load alone brings about"
-            return f"{self._certified(answer)}{seen}; smaller ones are not excluded{above}"
+            return f"{self._certified(answer)}{seen}; smaller ones are not excluded{self.above}"
         below = "" if self.lowest is None else "; others may end lower"
         if self.lowest is not None and self.lowest < (answer.lower or 0.0):
             below = f"; others may end from {number(self.lowest)} on, or lower"
@@ -198,8 +202,8 @@ class Knowledge:
             told = "the lowest and the highest of its paths in load steps of several lengths"
         wide = "" if _within(answer, self.tolerance) else ", which lie further apart than the tolerance"
         if self.scene.is_led:
-            return f"largest reaction of the drive along its path in {told}{wide}{below}{above}"
-        return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
+            return f"largest reaction of the drive along its path in {told}{wide}{below}{self.above}"
+        return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{self.above}"
 
     def _certified(self, answer: Outcome) -> str:
         """Describe the certified part of the answer, before the bound or a history has widened its bracket."""

@@ -62,8 +62,9 @@ def depends(case: Case) -> str:
 
 
 COLUMNS = ("wall", "model", "parameter", "setting")
-OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "questions", "measure")]
-SOURCES = (*OWN, PACKAGE / "studies" / "walls.py")
+SOURCES = [
+    PACKAGE / f"studies/{name}.py" for name in ("walls", "accuracy/walls", "accuracy/questions", "accuracy/measure")
+]
 CASES = {
     "accuracy": [*_cases(accuracy_walls())],
     "stiffness": [*_cases(stiffness_walls()), (STIFF[-1], "dem-dynamic", "", "")],

@@ -213,8 +213,6 @@ STUDY = Study(
             lambda what, name: {LEAST_LOCAL: least_local, MOST_LOCAL: most_local, FEIGNED: most_mass_rate}[what](name),
         ),
     },
-    charts=[
-        Chart("Steps until the verdict over local and viscous damping, and over mass-proportional", _draw, size=(10, 6))
-    ],
+    charts=[Chart("Steps until the verdict over local, viscous and mass-proportional damping", _draw, size=(10, 6))],
     fits=fits,
 )

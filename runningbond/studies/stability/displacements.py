@@ -121,8 +121,6 @@ STUDY = Study(
     beyond="a model at small displacements reports it in its message and continues at the same λ; `displacements = "
     '"finite"` gives the falling curve',
     parts={PART: Part(("what",), [(what,) for what in WALLS], measure)},
-    charts=[
-        Chart("λ past its peak at small and at finite displacements, and what is lost between", _draw, size=(9, 4.8))
-    ],
+    charts=[Chart("λ past its peak at small and finite displacements, and what is lost between", _draw, size=(9, 4.8))],
     fits=fits,
 )

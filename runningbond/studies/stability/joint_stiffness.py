@@ -126,8 +126,6 @@ STUDY = Study(
     beyond="softer: a message that joints are too soft; stiffer: `undecided`, because the budget runs out, with the "
     "time for which each load was followed",
     parts={REST: Part((K_N,), [*zip(NORMAL)], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
-    charts=[
-        Chart("λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw, size=(11, 4.6))
-    ],
+    charts=[Chart("λ, overlap under the dead load and time steps of joints from soft to stiff", _draw, size=(11, 4.6))],
     fits=fits,
 )

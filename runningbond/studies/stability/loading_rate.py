@@ -212,8 +212,6 @@ STUDY = Study(
         OWN: Part(("wall",), [(W1,)], own_row),
         STEPPED: Part(("wall", LOADED), [*product((W1, *DRY), LOADINGS)], step_row),
     },
-    charts=[
-        Chart("λ by the speed of loading: a ramp, a prescribed displacement, and load steps", _draw, size=(10, 4.8))
-    ],
+    charts=[Chart("λ by the speed of loading: a ramp, a prescribed displacement, load steps", _draw, size=(10, 4.8))],
     fits=fits,
 )
