@@ -14,7 +14,7 @@ from .load_path import StaticState
 from .static_system import Control, StaticSystem
 
 MIN_STEPS = 25
-"""Smallest number of steps in the longest leg of a path, from one reversal to the next, in the first traverse."""
+"""Smallest number of steps in each leg of a path, from one reversal to the next, in the first traverse."""
 
 STEP_GROWTH = 1.3
 """Ratio of a step's length to that of the step before, up to the longest step, in the first traverse."""
@@ -120,10 +120,9 @@ class StaticLead(ABC):
 
     def stops(self, share: float) -> Iterator[tuple[float, bool]]:
         """Yield the values to hold along the path, each with whether it begins a leg; `share` scales the steps."""
-        at, goals = 0.0, self.goals
-        longest = np.abs(np.diff(goals, prepend=0.0)).max() / MIN_STEPS
-        for goal in goals:
-            lengths = [0.0]
+        at = 0.0
+        for goal in self.goals:
+            lengths, longest = [0.0], abs(goal - at) / MIN_STEPS
             step = min(self.elastic_step, longest)
             while lengths[-1] < abs(goal - at):
                 lengths.append(lengths[-1] + share * step)

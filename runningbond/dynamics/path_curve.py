@@ -82,6 +82,13 @@ def late_growth(curve: Array) -> float:
     return max(0.0, float(force[late].max() - force[~late].max(initial=0.0)))
 
 
+def _late_shares(curve: Array) -> tuple[Array, Array]:
+    """Shares of the last leg of a curve ``(n, 2)``, and those over its last part, from its beginning on."""
+    value, share = last_leg(curve).T
+    start = (1 - FINAL_PART) * value.max()
+    return share, np.append(np.interp(start, value, share), share[value >= start])
+
+
 def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:
     """Whether a mechanism has formed under a settling support: its share no longer changes at the end of a path.
 
@@ -95,20 +102,19 @@ def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:
     still
         Change of a share that motion may have caused, which counts as none: it may be all the change there was.
     """
-    value, share = last_leg(curve).T
-    late = value >= (1 - FINAL_PART) * value.max()
+    share, late = _late_shares(curve)
     least = max(still, UNCHANGED)
-    return bool(np.ptp(share[late]) <= min(tolerance, FINAL_PART / 2) * np.ptp(share) + least)
+    return bool(np.ptp(late) <= min(tolerance, FINAL_PART / 2) * np.ptp(share) + least)
 
 
 def shedding(curve: Array) -> tuple[bool, str]:
     """Whether the share on a support falls at the end of a path, and the name of the change: the share may be negative.
 
-    If the share no longer changes over the last part, the whole leg counts.
+    If the share hardly changes over the last part, the whole leg counts: it wavers a little in large steps.
     """
-    value, share = last_leg(curve).T
-    late = share[value >= (1 - FINAL_PART) * value.max()]
-    first, last = late[0] if abs(late[-1] - late[0]) > UNCHANGED else share[0], share[-1]
+    share, late = _late_shares(curve)
+    changes = abs(late[-1] - late[0]) > UNCHANGED + LITTLE * np.ptp(share)
+    first, last = late[0] if changes else share[0], share[-1]
     return bool(last <= first), "sheds load" if abs(last) <= abs(first) else "takes up load"
 
 

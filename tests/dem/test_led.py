@@ -12,6 +12,7 @@ from dem.load_path import LoadPath, StaticState
 from dem.relaxation import Rest
 from dem.static import dem_static
 from dem.static_system import Control
+from runningbond import Wall
 from runningbond.limit import limit
 from runningbond.limit.settlement import reaction_unit
 from runningbond.models import MODELS, run_model
@@ -365,6 +366,28 @@ def test_slightly_moved_support_is_undecided() -> None:
     assert f"it bears {number(outcome.curve[-1, 1])} at 1e-06 m; " in outcome.message
     assert outcome.upper == pytest.approx(outcome.curve[-1, 1], rel=1e-6)
     assert 1.375 / 3 < outcome.curve[-1, 1] < 0.5
+
+
+@pytest.mark.filterwarnings("ignore:tie.*is an anchor fixed in space")
+@pytest.mark.parametrize("back", [0.5, 0.85, 0.95])
+def test_tie_that_unloads_along_a_short_last_leg_is_no_mechanism(back: float) -> None:
+    """A block on ground that sinks by 1 mm, and rises again by less, hangs on a tie that yields at 1 kN."""
+    stiffness, weight, yield_force = 1.05e6, 0.5 * 0.4 * 2000 * 9.81, 1000.0
+    held = Wall.outlines(
+        [rectangle(0.0, 0.0, 0.5, 1.0)],
+        [rectangle(-2.0, -0.5, 5.0, 0.5)],
+        thickness=0.4,
+        density=2000.0,
+        friction=0.8,
+        tie=[{"from": [0.25, 1], "to": [0.25, 2], "area": 1e-4, "young": 1e4 * stiffness, "yield": yield_force}],
+        live={"kind": "settlement", "box": [[-3, -1], [4, 1e-4]], "by": [0, -1e-3], "path": [1, back]},
+        normal_stiffness=1e10,
+        shear_stiffness=4e9,
+    )
+    outcome = dem_static(held.scene)
+    assert (outcome.status, outcome.upper) == ("undecided", None)
+    share = 1 - (yield_force - stiffness * 1e-3 * (1 - back)) / weight
+    assert outcome.lower == pytest.approx(share, rel=1e-3)
 
 
 def test_answer_of_a_cycle_is_the_reaction_along_its_first_move() -> None:

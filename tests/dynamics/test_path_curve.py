@@ -87,6 +87,13 @@ def test_share_that_still_changes_is_of_no_mechanism(
     assert formed(back, tolerance, still=still) == expected
 
 
+@pytest.mark.parametrize("rows", [2, 3, 7])
+def test_even_change_in_few_rows_is_of_no_mechanism(rows: int) -> None:
+    """Only the last row lies in the last tenth, and a single row does not change."""
+    x = np.linspace(0.0, 1.0, rows)
+    assert not formed(np.column_stack([x, 1 - x]), 0.01)
+
+
 @pytest.mark.parametrize(
     ("at", "falls", "change"),
     [
