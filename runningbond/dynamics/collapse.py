@@ -40,6 +40,7 @@ class Criteria:
     rest: float = 1e-5  # unbalanced force, in the system's force units, below which the wall is at rest
     budget: int = 2_000_000  # steps after which the verdict is undecided
     interval: int = 200  # steps between two checks
+    softness: float = 1.0  # ratio of a wall's motion to its next rest to that to its last one
     dragged: float = DRAGGED  # steps after which damping no longer slows down drift (`DRAGGED`)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.joints import JointPoints, ends_note, stiffness_note
-from runningbond.joints.stiffness import GIVES
+from runningbond.joints.stiffness import GIVES, rocking_softness
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import joined
 from runningbond.scene import Array, Indices, Scene
@@ -41,6 +41,12 @@ BEYOND_BOUND = 2.0
 
 LARGEST_ELASTIC = 20.0
 """Displacement, in elastic displacements under a load proved too large, beyond which the search for a collapse ends."""
+
+MOST_SOFTNESS = 16.0
+"""Largest ratio of a wall's motion to its next rest to that to its last one: a joint is softer the less of it bears.
+
+Of joints at nine points the last tenth is 240 times as soft as the whole, and rests follow each other closely.
+"""
 
 DRAWN_OVERLAP = 0.02
 """Overlap of joints in a drawn mechanism, relative to the largest displacement, that is barely visible."""
@@ -98,7 +104,8 @@ def collapse_by_steps(
         What the message is to add about the run.
     collapse
         Displacement at which a wall that does not slow down has collapsed, in block sizes; at least `GIVES` times the
-        elastic displacement under the `bound`, and for a wall with weight at least the displacement reached at rest.
+        elastic displacement under the `bound`, and for a wall with weight at least the displacement reached at rest, or
+        up to `MOST_SOFTNESS` times as much if joints become softer as they open.
     first_step
         First load step; steps grow while the wall carries them and are bisected once it does not. A first step beyond
         the `bound` is halved until it is below it, at most `HALVINGS` times.
@@ -118,7 +125,8 @@ def collapse_by_steps(
         status is ``failed`` if the run creates energy, as it does with too long a time step.
     """
     system, sizes = run.system, scene.block_sizes[run.system.owner]
-    criteria = Criteria(collapse=collapse * sizes, budget=budget)
+    softness = min(MOST_SOFTNESS, rocking_softness(points))
+    criteria = Criteria(collapse=collapse * sizes, softness=softness, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may carry all of the live load
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
     note = joined(note, beam_note(scene), ends_note(scene, points))

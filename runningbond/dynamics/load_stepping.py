@@ -228,13 +228,14 @@ class _Search:
         """Criteria of collapse at the next load: the wall must move again by as much as it has moved so far at rest.
 
         If joints are soft relative to the load, one more step displaces such a wall farther than a collapse displaces
-        others. Walls without weight approach the load under which they fell in a different way.
+        others, and all the more if they become softer as they open. Walls without weight approach the load under which
+        they fell in a different way.
         """
         if self.run.system.weightless:
             return self.criteria
         moved = borne.motion - self.result.rests[0][1].motion
         come = self.run.system.farthest(moved, self.criteria.collapse)
-        return replace(self.criteria, collapse=self.criteria.collapse * max(1.0, come))
+        return replace(self.criteria, collapse=self.criteria.collapse * max(1.0, self.criteria.softness * come))
 
     def _load_at_once(self) -> Growth:
         """Apply the first step at once, and double it while nothing is lost: elastic walls do not depend on the order.

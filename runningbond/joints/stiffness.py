@@ -4,6 +4,8 @@ import numpy as np
 
 from runningbond.scene import Indices, JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
 
+from .points import JointPoints
+
 GIVES = 2.0
 """Smallest motion that counts as a collapse, relative to the elastic motion of the wall under the same load.
 
@@ -75,6 +77,30 @@ def block_compliance(scene: Scene) -> float:
     block, length = _upper(scene)[beds], scene.joints.length[beds]
     softer = float(length @ ((high - low)[block, 1] / young[scene.material_of_block[block]]))
     return softer / (softer + float(length @ (1 / normal[scene.material_of_joint[beds]])))
+
+
+def rocking_softness(points: JointPoints) -> float:
+    """Largest ratio, over all joints, of the rotation of a joint that bears on an end to that of a closed joint.
+
+    A joint whose force N has moved to an end bears on the point there alone, and the next one, at a distance d, is
+    about to close: it has turned by N / (k_n A w d). Closed, it would turn by N e / (k_n A Σ w x²) under the same
+    moment. Areas are A w, and x and e are distances from their centroid, of the points and of the end. The ratio is 1
+    for two points, and 240 for nine points of a Lobatto rule.
+    """
+    along = (points.position * points.tangent).sum(axis=1)
+    order = np.lexsort((along, points.joint))
+    first = np.flatnonzero(np.diff(points.joint[order], prepend=-1))
+    count = np.diff(first, append=len(order))
+    weight, along = points.area[order], along[order]
+    total = np.add.reduceat(weight, first)
+    weight /= np.repeat(total, count)
+    along -= np.repeat(np.add.reduceat(weight * along, first), count)
+    inertia = np.add.reduceat(weight * along**2, first)
+    softness = [1.0]
+    for end, beside in ((first, first + 1), (first + count - 1, first + count - 2)):
+        end, beside, own = end[count > 1], beside[count > 1], inertia[count > 1]
+        softness += (own / np.abs(along[end] * weight[end] * (along[end] - along[beside]))).tolist()
+    return max(softness)
 
 
 def _beds(scene: Scene) -> Indices:

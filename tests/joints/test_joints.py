@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength, wall_rule
+from runningbond.joints.stiffness import rocking_softness
 from runningbond.scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
 from tests.walls import panel
 
@@ -47,6 +48,16 @@ def test_frame_is_right_handed_and_inset_moves_points_inwards(angle: float, inse
     n, t = points.normal[0], points.tangent[0]
     assert t == pytest.approx([-n[1], n[0]])
     assert math.hypot(*(points.position[1] - points.position[0])) == pytest.approx(2 - 2 * inset)
+
+
+@pytest.mark.parametrize(("count", "expected"), [(2, 1.0), (3, 2.0), (9, 240.0)])
+def test_joint_is_the_softer_the_less_of_it_bears(count: int, expected: float) -> None:
+    """With three points, Σ w x² = 1/12, the end carries a sixth, and the next point is half a length away."""
+    scene = panel()
+    points = joint_points(scene.joints, scene.thickness, lobatto(count))
+    shuffled = points.part(np.random.default_rng(1).permutation(len(points)))
+    assert rocking_softness(shuffled) == pytest.approx(expected, rel=0.01)
+    assert rocking_softness(joint_points(scene.joints, scene.thickness, gauss(1))) == 1.0
 
 
 def test_mortar_stiffness_is_that_of_a_confined_layer() -> None:
