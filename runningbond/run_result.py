@@ -93,14 +93,15 @@ class Result:
         """Joint points: two per joint, or all points along joints if any joint softens, crushes or closes.
 
         ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
-        tension positive, and ``opening`` and ``slip`` [m] of the mechanism. NaN where the model gives no value.
+        tension positive, and ``opening`` and ``slip`` [m] of the mechanism, or in the deformed shape of a wall that has
+        moved far (`Outcome.moved`). NaN where the model gives no value.
         """
         scene = self.wall.scene
         force = self.outcome.force
         points = listed_points(scene, len(force)) or wall_points(scene)
         if len(force) != len(points):
             force = np.full((len(points), 2), np.nan)
-        opening, slip = rigid_jumps(scene.blocks, points, self._mechanism())
+        opening, slip = rigid_jumps(scene.blocks, points, self._mechanism(), self.outcome.moved)
         (a, b), (x, y) = points.block.T, points.position.T
         place = {"joint": points.joint, "a": a, "b": b, "x": x, "y": y, "area": points.area}
         forces = {"normal_force": force[:, 0], "shear_force": force[:, 1]}

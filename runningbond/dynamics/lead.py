@@ -26,6 +26,12 @@ RAMP = 10
 STRIDE = 10
 """Rows between two calls of an observer, and over which the motion of a mechanism is taken."""
 
+MOST_TURN = 0.03
+"""Rotation of a block [rad] up to which the latest motion of a wall is its mechanism in the shape as built.
+
+Beyond that its joints would overlap visibly, and the wall's deformed shape shows where they open.
+"""
+
 FALL_DESCENT = 0.5
 """Descent of the whole dead load, in block sizes, whose work must at least be done before a wall counts as falling."""
 
@@ -207,7 +213,10 @@ class Lead(ABC):
             traverse.rows.insert(peak.row, traverse.rows.pop())
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
         row = self.failing(traverse.curve)
-        traverse.motion = seen[row][0] - seen[max(0, row - STRIDE)][0]
+        whole = seen[row][0] - self.start.motion
+        turns = self.run.system.motion_of_blocks(whole)[:, 2]
+        traverse.is_shape = not self.is_small and float(np.abs(turns).max()) > MOST_TURN
+        traverse.motion = whole if traverse.is_shape else seen[row][0] - seen[max(0, row - STRIDE)][0]
         # The maximum so far: joints that have opened since have also been crushed.
         traverse.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)
 

@@ -15,7 +15,8 @@ from functools import cache
 import numpy as np
 
 from runningbond.joints import JointPoints
-from runningbond.results import Outcome, Supports, fastest_corner_by_one
+from runningbond.results import Outcome, Supports
+from runningbond.results.mechanism import fastest_corner
 from runningbond.results.outcome import joined, number
 from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
@@ -211,11 +212,13 @@ def _fall_alike(fast: Traverse, slow: Traverse, tolerance: float) -> bool:
 
 
 def _arrays(outcome: Outcome, lead: Lead, traverse: Traverse, point_order: Indices) -> Outcome:
-    """Forces at the answer, and motion: the whole shape for a settlement, the mechanism for a drive."""
+    """Forces at the answer, and motion: that to the deformed shape, or the mechanism of a drive."""
     run = lead.run
     force, motion = run.at_joints(traverse.best)[2:4].T[point_order], run.system.motion_of_blocks(traverse.motion)
     if motion.any():
-        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion), crushed=traverse.crushed)
+        fastest = fastest_corner(lead.scene.blocks, motion)
+        moved = fastest if traverse.is_shape else None
+        outcome = replace(outcome, motion=motion / fastest, moved=moved, crushed=traverse.crushed)
     return replace(outcome, force=force)
 
 

@@ -101,6 +101,7 @@ class SupportSettlement(Lead):
             # Of a fall at small displacements the motion is shown; at finite ones blocks may have turned by any angle.
             if (not doubtful or not self.is_small) if stands else self.is_small:
                 traverse.motion, traverse.crushed = state.motion - self.start.motion, self.crushed(state)
+                traverse.is_shape = not self.is_small
             if stands:
                 bears = self.share(state, 0.0, self.criteria.interval, given)
                 # Close to the end supports barely move. What changes as they stop is friction that motion has loosened.

@@ -46,6 +46,7 @@ class Traverse:
     inertia: float = 0.0  # by how much smaller, as bodies accelerate; in settlements both are due to loosened friction
     drag: float = 0.0  # part of the answer of a push that damping takes
     crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # permanent closure at the joints' ends there [m]
+    is_shape: bool = False  # whether the motion is the wall's deformed shape, far from that as built
     gone: float = 0.0  # sum over the rows of a push of how far the farthest blocks moved [m]
     elsewhere: tuple[Indices, Array, Array] | None = None  # where displacements are read if the control point stays
     lasting: float = 0.0  # largest mean force over a whole row during motion

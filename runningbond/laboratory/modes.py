@@ -56,13 +56,13 @@ def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
             return ROCKING
     if abs(float(motion[beam, 2])) * height >= HALF * moved:
         return ROCKING
-    return SLIDING if max(bed_slips(scene, motion)) >= HALF * moved else DIAGONAL
+    return SLIDING if max(bed_slips(scene, motion, outcome.moved)) >= HALF * moved else DIAGONAL
 
 
-def bed_slips(scene: Scene, motion: Array) -> list[float]:
-    """Mean slip of each bed joint over the wall's whole length [m], for a motion ``(nb, 3)``."""
+def bed_slips(scene: Scene, motion: Array, moved: float | None = None) -> list[float]:
+    """Mean slip of each bed joint over the wall's whole length [m], for a motion ``(nb, 3)`` as in `Outcome`."""
     points, bed = wall_points(scene), scene.joints.is_bed
-    _, slip = rigid_jumps(scene.blocks, points, motion)
+    _, slip = rigid_jumps(scene.blocks, points, motion, moved)
     level = np.round(points.position[:, 1] / scene.blocks.tolerance).astype(int)
     slips = []
     for each in np.unique(level[bed[points.joint]]):

@@ -30,6 +30,9 @@ LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.14, 0.105, 0.08
 TITLE_LENGTH = 48
 """Characters per line of the title, which fit into the narrowest picture."""
 
+FIVE_COLUMNS = 45
+"""Letters in all entries of a key below which five of them fit side by side; otherwise three do."""
+
 
 @dataclass(frozen=True)
 class Caption:
@@ -42,14 +45,14 @@ class Caption:
     notes
         Lines below the drawing and its key.
     key, columns
-        Legend handles that explain colours and lines, and the number of columns of the legend.
+        Legend handles that explain colours and lines, and the number of columns of the legend; None for as many as fit.
     """
 
     heading: Sequence[str]
     subtitle: str
     notes: Sequence[str]
     key: Sequence[Any]
-    columns: int = 5
+    columns: int | None = None
 
     @property
     def room(self) -> tuple[float, float]:
@@ -60,9 +63,14 @@ class Caption:
     @property
     def _key_height(self) -> float:
         labels = [handle.get_label() for handle in self.key]
-        n = math.ceil(len(labels) / self.columns)
+        n = math.ceil(len(labels) / self._columns)
         more = sum(max(label.count("\n") for label in labels[k::n]) for k in range(n))
         return float(KEY_LINE * n + NOTE_LINE * more + 0.04)
+
+    @property
+    def _columns(self) -> int:
+        letters = sum(len(handle.get_label()) for handle in self.key)
+        return self.columns or (5 if letters < FIVE_COLUMNS else 3)
 
     def write(self, axes: "Axes") -> None:
         """Write the text above and below axes."""
@@ -71,7 +79,7 @@ class Caption:
             if text:
                 _write(axes, text, 1.0, level, va="bottom", fontsize=TYPE, fontweight=weight)
                 level += LINE
-        place: dict[str, Any] = {"bbox_to_anchor": (0.5, 0.0), "ncols": self.columns, "borderaxespad": 0.4}
+        place: dict[str, Any] = {"bbox_to_anchor": (0.5, 0.0), "ncols": self._columns, "borderaxespad": 0.4}
         spacing = {"handlelength": 1.5, "handletextpad": 0.5, "columnspacing": 1.0, "borderpad": 0.0}
         legend = place | spacing | {"frameon": False, "fontsize": SMALL_TYPE}
         axes.legend(handles=self.key, loc="upper center", **legend)
@@ -139,12 +147,13 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
     if not drawn:
         return Caption(title, load, [warning or "no mechanism"], [])
     key = [*key, *held_key(scene)]
-    columns = 5 if sum(len(handle.get_label()) for handle in key) < 45 else 3
     what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
     if outcome.status == "infeasible":
         what = "under dead load; its fastest corner"
-    size = f"{what} is drawn to move {DRAWN * scene.size:.2g} m"
-    return Caption(title, load, [size, warning] if warning else [size], key, columns)
+    if outcome.moved is not None:
+        what = "deformed shape; its farthest corner"
+    size = f"{what} is drawn to move {max(DRAWN * scene.size, outcome.moved or 0.0):.2g} m"
+    return Caption(title, load, [size, warning] if warning else [size], key)
 
 
 def wall_title(title: str) -> list[str]:

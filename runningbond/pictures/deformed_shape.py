@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runningbond.results.mechanism import carried
+from runningbond.results.mechanism import carried, turned
 from runningbond.scene import Array, Indices, Mask, Scene
 
 from .joint_state import JointState, joint_states
@@ -47,6 +47,8 @@ class DeformedShape:
         Whether each joint is crushed at its ends; empty if none is.
     motion : (nb, 3) float
         Motion of each block, used only to draw the supports; empty if these are at rest.
+    finite
+        Whether blocks have turned by finite angles.
     time
         Time since the ground motion began [s]; None without a ground motion.
     """
@@ -66,21 +68,25 @@ class DeformedShape:
     motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
     crushed: Mask = field(default_factory=lambda: np.zeros((0, 2), np.bool_))
     time: float | None = None
+    finite: bool = False
 
     @classmethod
-    def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
+    def of_rigid_blocks(
+        cls, scene: Scene, motion: Array, state: Indices, multiplier: float, *, finite: bool = False
+    ) -> "DeformedShape":
         """Shape of rigid blocks with motions ``(nb, 3)`` [m, m, rad], with displacements scaled to be visible.
 
-        The scale follows from the largest displacement of the wall or of its supports, whichever is larger. States are
-        those of joints ``(nj,)`` or of their ends ``(nj, 2)``.
+        The scale follows from the largest displacement of the wall or of its supports, whichever is larger; if blocks
+        turn by `finite` angles, it is at least 1. States are those of joints ``(nj,)`` or of their ends ``(nj, 2)``.
         """
+        carry, scale_of = (turned, series_scale) if finite else (carried, visible_scale)
         blocks, joints = scene.blocks, scene.joints
         own = scene.wall[blocks.owner]
-        displacement = carried(blocks, blocks.owner, blocks.vertices, motion)[own]
+        displacement = carry(blocks, blocks.owner, blocks.vertices, motion)[own]
         first = np.concatenate([[0], np.cumsum(np.diff(blocks.first)[scene.wall])])
         faces = joints.ends[:, [0, 1, 1, 0]]
         sides = joints.block[:, [0, 0, 1, 1]]
-        moved = carried(blocks, sides.ravel(), faces.reshape(-1, 2), motion).reshape(-1, 4, 2)
+        moved = carry(blocks, sides.ravel(), faces.reshape(-1, 2), motion).reshape(-1, 4, 2)
         return cls(
             scene,
             blocks.vertices[own],
@@ -92,8 +98,9 @@ class DeformedShape:
             moved,
             joint_states(state.reshape(len(faces), -1)),
             multiplier,
-            visible_scale(scene.size, farthest_motion(np.concatenate([displacement, moved.reshape(-1, 2)]))),
+            scale_of(scene.size, farthest_motion(np.concatenate([displacement, moved.reshape(-1, 2)]))),
             motion=motion,
+            finite=finite,
             crushed=crushed_ends(state),
         )
 
@@ -168,9 +175,8 @@ class DeformedShape:
         """Drawn displacement ``(2,)`` [m] of a point ``(2,)`` [m] on blocks ``(n,)``."""
         if not self.scene.wall[block].any() or (block < 0).any():  # a support, or an anchor in space
             rests = len(self.motion) == 0 or len(block) == 0 or (block < 0).any()
-            return (
-                np.zeros(2) if rests else self.scale * carried(self.scene.blocks, block[:1], at[None], self.motion)[0]
-            )
+            carry = turned if self.finite else carried
+            return np.zeros(2) if rests else self.scale * carry(self.scene.blocks, block[:1], at[None], self.motion)[0]
         own = np.repeat(np.isin(self.block, block), np.diff(self.first))
         # A linear fit to the displacements of the corners is exact for rigid blocks.
         place = np.column_stack([np.ones(own.sum()), self.points[own] - at])

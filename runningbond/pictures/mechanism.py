@@ -23,7 +23,7 @@ def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
     if not has_mechanism(scene, outcome):
         return None
     points = wall_points(scene)
-    opening, slip = rigid_jumps(scene.blocks, points, outcome.motion)
+    opening, slip = rigid_jumps(scene.blocks, points, outcome.motion, outcome.moved)
     listed, traction = listed_points(scene, len(outcome.force)), np.zeros((len(points), 2))
     if listed is not None and len(points):
         of_joint = (outcome.force / listed.area[:, None]).reshape(len(scene.joints), -1, 2)
@@ -51,7 +51,8 @@ def outcome_check(scene: Scene, outcome: Outcome) -> MechanismCheck | None:
         return check_mechanism(scene, outcome.motion, none, none, 0.0)
     bounds = (outcome.upper, outcome.multiplier, outcome.lower)
     multiplier = next((bound for bound in bounds if bound is not None), 0.0)
-    return check_mechanism(scene, outcome.motion, dead_load(scene), live_load(scene), multiplier)
+    dead, live = dead_load(scene), live_load(scene)
+    return check_mechanism(scene, outcome.motion, dead, live, multiplier, outcome.moved)
 
 
 def mechanism_warning(scene: Scene, outcome: Outcome) -> str:
@@ -69,4 +70,7 @@ def mechanism_shape(scene: Scene, outcome: Outcome) -> DeformedShape | None:
         return None
     if outcome.status == "infeasible" and scene.settlement is None:
         scene = replace(scene, load=replace(scene.load, live=()))  # it falls without the live load
-    return DeformedShape.of_rigid_blocks(scene, frame.motion, frame.state.reshape(-1, 2), frame.multiplier)
+    state = frame.state.reshape(-1, 2)
+    if outcome.moved is None:
+        return DeformedShape.of_rigid_blocks(scene, frame.motion, state, frame.multiplier)
+    return DeformedShape.of_rigid_blocks(scene, outcome.moved * frame.motion, state, frame.multiplier, finite=True)

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runningbond.results.mechanism import turned
 from runningbond.scene import Array, Scene
 
 from .annotations import axes_size, metres_of_point
@@ -32,12 +31,11 @@ def moved_shape(scene: Scene, motion: Array) -> DeformedShape:
 
     A negligible motion is not enlarged, because the elastic deformation of joints would look like a ruin.
     """
-    shape = DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), dtype=np.int64), 0.0)
-    own, blocks = scene.wall[scene.blocks.owner], scene.blocks
-    displacement = turned(blocks, blocks.owner, blocks.vertices, motion)[own]
-    farthest = farthest_motion(displacement)
-    scale = series_scale(scene.size, farthest) if farthest > NEGLIGIBLE * blocks.tolerance else 1.0
-    return replace(shape, displacement=displacement, scale=scale)
+    sticking = np.zeros(len(scene.joints), dtype=np.int64)
+    shape = DeformedShape.of_rigid_blocks(scene, motion, sticking, 0.0, finite=True)
+    farthest = farthest_motion(shape.displacement)
+    scale = series_scale(scene.size, farthest) if farthest > NEGLIGIBLE * scene.blocks.tolerance else 1.0
+    return replace(shape, scale=scale)
 
 
 def enlarged(shape: DeformedShape) -> str:

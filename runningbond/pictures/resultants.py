@@ -4,6 +4,7 @@ import numpy as np
 
 from runningbond.joints import listed_points
 from runningbond.results import Outcome
+from runningbond.results.mechanism import turned_frames
 from runningbond.scene import Array
 
 from .deformed_shape import DeformedShape, mid_lines, usual_side
@@ -27,7 +28,8 @@ def resultants(shape: DeformedShape, outcome: Outcome) -> tuple[Array, float, in
     points = listed_points(scene, len(outcome.force))
     if points is None or not len(joints):
         return np.zeros((0, 2, 2)), 0.0, 0
-    force = outcome.force[:, :1] * points.normal + outcome.force[:, 1:] * points.tangent
+    normal, tangent = turned_frames(points, shape.motion) if shape.finite else (points.normal, points.tangent)
+    force = outcome.force[:, :1] * normal + outcome.force[:, 1:] * tangent
     start, run = joints.ends[:, 0], joints.ends[:, 1] - joints.ends[:, 0]
     along = ((points.position - start[points.joint]) * run[points.joint]).sum(axis=1) / joints.length[points.joint] ** 2
     # Measured from the middle of the joint. A resultant without a normal component has no centre of pressure.

@@ -16,8 +16,13 @@ WORK_TOLERANCE = 0.01
 
 def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
     """Scale motions ``(nb, 3)`` so that the fastest corner of any block moves by one metre."""
-    fastest = float(np.hypot(*carried(blocks, blocks.owner, blocks.vertices, motion).T).max())
+    fastest = fastest_corner(blocks, motion)
     return motion / fastest if fastest > 0 else motion
+
+
+def fastest_corner(blocks: Blocks, motion: Array) -> float:
+    """Largest linearised displacement [m] of any corner of any block for motions ``(nb, 3)``."""
+    return float(np.hypot(*carried(blocks, blocks.owner, blocks.vertices, motion).T).max())
 
 
 def carried(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
@@ -47,11 +52,19 @@ def rotated(vectors: Array, angle: Array) -> Array:
     return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
 
 
-def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array) -> tuple[Array, Array]:
-    """Opening and slip, two ``(np,)`` [m], of joint points between rigid blocks with motions ``(nb, 3)``."""
-    a, b = (carried(blocks, side, points.position, motion) for side in points.block.T)
+def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array, moved: float | None = None) -> tuple[Array, Array]:
+    """Opening and slip, two ``(np,)`` [m], of joint points between rigid blocks with motions ``(nb, 3)``.
+
+    If the blocks have `moved` far, these are 1 / `moved` of the jumps in the deformed shape (`Outcome.moved`).
+    """
+    if moved is None:
+        a, b = (carried(blocks, side, points.position, motion) for side in points.block.T)
+        normal, tangent = points.normal, points.tangent
+    else:
+        a, b = (turned(blocks, side, points.position, moved * motion) / moved for side in points.block.T)
+        normal, tangent = turned_frames(points, moved * motion)
     jump = b - a
-    return (jump * points.normal).sum(axis=1), (jump * points.tangent).sum(axis=1)
+    return (jump * normal).sum(axis=1), (jump * tangent).sum(axis=1)
 
 
 @dataclass(frozen=True)
@@ -93,7 +106,9 @@ class MechanismCheck:
         return ""
 
 
-def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multiplier: float) -> MechanismCheck:
+def check_mechanism(
+    scene: Scene, motion: Array, dead: Array, live: Array, multiplier: float, moved: float | None = None
+) -> MechanismCheck:
     """Check a mechanism against the loads that should drive it.
 
     Velocities at collapse satisfy ``f_live · u̇ > 0`` and ``(f_dead + λ f_live) · u̇ ≥ 0``, because the loads do the
@@ -107,11 +122,13 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
         Forces and moments of the loads on the blocks [N, N, N m].
     multiplier
         λ at which the wall moves; 0 if it collapses under its dead load: the live load's work is then not checked.
+    moved
+        As in `Outcome`.
     """
     motion = fastest_corner_by_one(scene.blocks, motion)
     by_dead, by_live = float(dead @ motion.ravel()), float(live @ motion.ravel())
     points = wall_points(scene)
-    opening, _ = rigid_jumps(scene.blocks, points, motion)
+    opening, _ = rigid_jumps(scene.blocks, points, motion, moved)
     sound = np.isinf(wall_caps(scene, points.joint)[0])
     return MechanismCheck(
         by_live if multiplier and live.any() else None,

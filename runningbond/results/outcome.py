@@ -36,6 +36,9 @@ class Outcome:
     motion : (nb, 3) float
         Collapse mechanism: displacement of each block's centroid [m] and rotation [rad], scaled so that the fastest
         corner moves by one metre. Empty if there is none.
+    moved
+        Factor [–] by which `motion` is that of a wall that has turned so far that its displacements are not linear in
+        its rotations: the mechanism is its deformed shape. None for a mechanism in the shape as built.
     force : (np, 2) float
         Normal and tangential force at each contact point [N], tension positive. Empty if not known.
     pull : (nt, 1) float
@@ -94,6 +97,7 @@ class Outcome:
     path_columns: tuple[str, ...] = ()
     fall: float | None = None
     crushed: Array = field(repr=False, default_factory=lambda: np.zeros((0, 2)))
+    moved: float | None = None
 
     def __post_init__(self) -> None:
         for name, columns in ARRAYS.items():

@@ -89,7 +89,7 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     if outcome.path_columns:
         columns |= {"path": outcome.path, "path_columns": np.array(outcome.path_columns)}
     columns |= scene_to_arrays(scene) if scene else {}
-    _save(folder, RECORD, {"key": key, **outcome.summary(), "fall": outcome.fall}, columns)
+    _save(folder, RECORD, {"key": key, **outcome.summary(), "fall": outcome.fall, "moved": outcome.moved}, columns)
 
 
 def save_response(summary: Mapping[str, Any], scene: Scene, folder: Path) -> None:

@@ -17,7 +17,7 @@ from PIL import Image
 
 from dem.static import dem_static
 from runningbond.limit import limit
-from runningbond.pictures.captions import show_extent, to_png, to_svg
+from runningbond.pictures.captions import Caption, colour_key, figure_with_room, show_extent, to_png, to_svg
 from runningbond.pictures.deformed_shape import DeformedShape, undeformed_shape
 from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of, line_width, paint_mechanism
 from runningbond.pictures.inline import inline_mechanism
@@ -247,6 +247,18 @@ def test_nothing_is_cut_off_at_figure_edge(kind: str) -> None:
         captions = np.concatenate([image[: int(len(image) - box.y1)], image[int(len(image) - box.y0) + 1 :]])
         assert (captions < 150).any()
         assert (captions[:, [0, 1, 2, -3, -2, -1]] > 250).all()
+
+
+def test_key_of_all_states_fits_the_width() -> None:
+    """Frames of walls whose joints slide, open, debond and crush have a key of six entries."""
+    caption = Caption(["wall"], "", [], colour_key(crushes=True))
+    figure, axes = figure_with_room((0.0, 1.0, 0.0, 1.0), caption)
+    caption.write(axes)
+    legend = axes.get_legend()
+    assert legend is not None
+    box = legend.get_window_extent().transformed(figure.transFigure.inverted())
+    assert box.x0 >= 0
+    assert box.x1 <= 1
 
 
 def test_svg_is_vectors_and_reproducible() -> None:

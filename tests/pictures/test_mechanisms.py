@@ -9,6 +9,7 @@ from matplotlib.text import Text
 
 from dem.static import dem_static
 from meshing import wall_mesh
+from runningbond import Wall
 from runningbond.compare.published import published_scene
 from runningbond.joints import wall_points
 from runningbond.limit import limit
@@ -21,6 +22,7 @@ from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import VISIBLE_JUMP, JointState
 from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape, mechanism_warning, outcome_check
+from runningbond.pictures.resultants import resultants
 from runningbond.pictures.style import CRUSHED
 from runningbond.pictures.vtk_grids import GridBuilder, shape_of_grids
 from runningbond.results import Outcome, check_mechanism
@@ -28,10 +30,11 @@ from runningbond.results.mechanism import MAX_OVERLAP, carried
 from runningbond.scene import Array, Scene, scene_from_dict
 from tests.at_length import at_length
 from tests.fem_interface.walls import MORTAR
-from tests.walls import courses, panel
+from tests.walls import content, courses, panel
 
 from .scenes import turning_support
 
+DRIVE = {"displacement": [0.12, 0.0]}
 POINT = {"kind": "point", "at": [0.2, 0.35], "force": [0.0, -1.0]}
 
 
@@ -113,6 +116,37 @@ def test_live_load_is_not_drawn_for_fall_under_dead_load(load: dict[str, Any]) -
         assert len(shape.scene.load.live) == drawn
         said = mechanism_caption(scene, outcome, [], drawn=True).notes[0]
         assert said.startswith("under dead load; its fastest corner is drawn to move") == (status == "infeasible")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"load__live": {"kind": "settlement", "box": [[-5, -5], [5, 1e-4]], "rotation_angle": 9.0, "about": [0.2, 0]}},
+        {"load__live": None, "beam": {"height": 0.1, "condition": "level", "force": [0, -2e3], "drive": DRIVE}},
+    ],
+    ids=["turned ground", "driven beam"],
+)
+def test_blocks_that_turn_together_by_large_angles_stay_in_contact(changes: dict[str, Any]) -> None:
+    """Joints under pressure are closed: linear in rotations of 0.1 they would overlap by percents of the motion."""
+    stiff = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9, "joint__friction": 0.9}
+    size = {"block_width": 0.3, "block_height": 0.3, "thickness": 0.3, "courses": [[1]] * 3}
+    wall = Wall(content(wall=size, **stiff, **changes))
+    scene, result = wall.scene, wall.run("dem-dynamic", displacements="finite")
+    assert result.outcome.moved is not None
+    joints = result.joints
+    pressed = joints["normal_force"] < -0.05 * np.abs(joints["normal_force"]).max()
+    assert pressed.sum() >= 2
+    assert np.abs(joints["opening"][pressed]).max() < 1e-3
+    assert mechanism_warning(scene, result.outcome) == ""
+    shape = mechanism_shape(scene, result.outcome)
+    assert shape is not None
+    edges = np.diff(shape.placed.reshape(-1, 4, 2), axis=1)
+    assert np.hypot(*edges.T) == pytest.approx(np.hypot(*np.diff(shape.points.reshape(-1, 4, 2), axis=1).T), rel=1e-2)
+    if scene.settlement is None:
+        assert len(shape.hinges) == 2
+    else:
+        lines, _, _ = resultants(shape, result.outcome)
+        assert np.abs(lines[:, 1, 0] - lines[:, 0, 0]) == pytest.approx(0.0, abs=1e-3)  # weights are vertical
 
 
 def states(scene: Scene, x: float, y: float) -> set[int]:
