@@ -52,6 +52,13 @@ EARLY_PEAK = 0.01
 RELAXATION_PART = 1e-6
 """Fraction of the distance by which a control point that stays in place moves because its springs relax."""
 
+SNAP_PART, SNAP_ROWS, SNAP_LOAD = 0.002, 4, 0.05
+"""A wall snaps if, in the last part of its control point's path, it moves on for some rows and loses some of its load.
+
+Parts are relative to the path and to the largest load. It has lost its equilibrium: what blocks take as they are thrown
+is no strength. A wall that tips loses its load evenly.
+"""
+
 STATIONARY_PART = 0.01
 """Largest displacement of a control point that stays in place, relative to the path of the farthest-moving blocks."""
 
@@ -229,7 +236,12 @@ class Push(Lead):
         brink = before + (after - before) * above / (above - below)
         if abs(brink) < RELAXATION_PART * self.distance:
             return "the multiplier falls to nothing while the control point stays where it is"
-        return f"the multiplier falls to nothing at {brink:.4g} m"
+        moved, load = traverse.curve.T
+        going = np.abs(moved) < (1 - SNAP_PART) * abs(brink)
+        last = float(load[going][-1:].sum())
+        if np.count_nonzero(~going) < SNAP_ROWS or last <= SNAP_LOAD * traverse.answer:
+            return f"the multiplier falls to nothing at {brink:.4g} m"
+        return f"the multiplier falls from {number(last)} to nothing at {brink:.4g} m, where the wall snaps"
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on blocks that vibrate without end, as friction can make them: damping takes a part of the load."""

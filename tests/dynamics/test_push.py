@@ -319,6 +319,25 @@ def test_message_on_vanishing_load_depends_on_control_point_motion(ends: tuple[f
     assert said in lead.fall(Traverse(nothing, np.zeros(0), True, rows))
 
 
+@pytest.mark.parametrize(
+    ("late", "said"),
+    [
+        ([0.02, 0.015, 0.01, 0.005], "the multiplier falls to nothing at 0.3 m"),
+        ([0.29, 0.33, 0.2, 0.1], "the multiplier falls from 0.3000 to nothing at 0.3 m, where the wall snaps"),
+    ],
+)
+def test_wall_that_loses_much_of_its_load_at_one_place_snaps(late: list[float], said: str) -> None:
+    """The control point stops while other blocks move on: an arch that is pushed down until three hinges fold."""
+    early = [(0.0, 1.0), (0.1, 0.6), (0.29, late[0] + 0.01)]
+    curve = np.array(
+        [*early, *((0.3 - 1e-6 * k, load) for k, load in zip((4, 3, 2, 1), late, strict=True)), (0.3, -0.1)]
+    )
+    nothing: Any = None
+    for side in (1.0, -1.0):
+        lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
+        assert lead.fall(pushed_along(curve * (side, 1.0))) == said.replace("at 0.3 m", f"at {side * 0.3:g} m")
+
+
 def test_low_load_pushes_block_to_balance() -> None:
     """A point near the ground moves a twelfth as far as the top; λ vanishes where the block balances on its toe."""
     at = np.array([0.0, 0.05 * HEIGHT])
