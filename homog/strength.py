@@ -25,6 +25,9 @@ ROUNDS = 100
 FIRST_TANGENTS = np.array([[1.0, 0.0], [0.6, 0.8], [0.6, -0.8], [0.0, 1.0], [0.0, -1.0]])
 """Points of the first tangents to a cap, as unit vectors of (p, √C_ss τ)."""
 
+TOLERANCES, INFEASIBLE = ("primal_feasibility_tolerance", "dual_feasibility_tolerance"), 2
+"""Tolerances of HiGHS, and the status by which `scipy.optimize.linprog` calls a program infeasible."""
+
 
 @dataclass(frozen=True)
 class StrengthDomain:
@@ -128,16 +131,20 @@ class StrengthDomain:
 def _largest(balance: Array, rows: Array, right: Array) -> tuple[float, Array]:
     """Largest t, or inf, and tractions σ and τ ``(2, 3)`` of the joints that carry it."""
     free = [(0, None)] + [(None, None)] * 6
-    found = linprog(
-        [-1, *[0] * 6],
-        A_ub=rows,
-        b_ub=right,
-        A_eq=balance,
-        b_eq=np.zeros(4),
-        bounds=free,
-        method="highs",
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-    )
+    # No stress is always carried, but presolve takes some unbounded programs for infeasible ones.
+    for presolve in (True, False):
+        found = linprog(
+            [-1, *[0] * 6],
+            A_ub=rows,
+            b_ub=right,
+            A_eq=balance,
+            b_eq=np.zeros(4),
+            bounds=free,
+            method="highs",
+            options={"presolve": presolve, **dict.fromkeys(TOLERANCES, 1e-10)},
+        )
+        if found.status != INFEASIBLE:
+            break
     if found.status == 3:
         return float("inf"), np.zeros((2, 3))
     if found.status != 0 or found.x is None:

@@ -80,14 +80,22 @@ def report_interrupt(stopped: Interrupted, total: int, what: str, folder: Path |
 
 
 def print_table(sheet: Sheet) -> None:
-    """Print a table as wide as the terminal, or 180 characters wide if there is none."""
+    """Print a table as wide as the terminal, or 180 characters wide if there is none.
+
+    If the reader has closed the pipe, as ``head`` does, nothing more is printed, and the command goes on.
+    """
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     table = Table(title=Text(sheet.title), title_justify="left")
     for head in sheet.heads:
         table.add_column(Text(head))
     for row in sheet.rows:
         table.add_row(*map(Text, row))
-    console.print(table)
+    with console.capture() as captured:
+        console.print(table)
+    try:
+        print(captured.get(), end="", flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def can_draw() -> bool:

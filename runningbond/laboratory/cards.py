@@ -93,7 +93,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         if wall.is_cyclic:
             _envelope(axes, each.curve, ends, each.rung.model.colour)
     if wall.is_cyclic and len(wall.curve):
-        _envelope(axes, wall.curve, ends, MEASURED, "peaks of its cycles")
+        _envelope(axes, wall.curve, ends, MEASURED, "measured, peaks of its cycles")
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")
     axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)

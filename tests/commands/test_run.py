@@ -214,6 +214,18 @@ def test_json_output_is_pure_with_stderr_on_a_terminal(small: str) -> None:
     assert json.loads(done.stdout)["status"] == "collapse"
 
 
+def test_comparison_is_written_although_its_reader_closes_the_pipe(small: str, tmp_path: Path) -> None:
+    """As ``head -1`` does: the tables are printed before the report is written, which was then left out."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    line = [sys.executable, "-m", "runningbond", "compare", small, "--models", "limit", "--out", str(tmp_path / "out")]
+    done = subprocess.run(line, stdout=writing, stderr=subprocess.PIPE, check=False)
+    os.close(writing)
+    assert done.returncode == 0
+    assert b"Error" not in done.stderr
+    assert (tmp_path / "out" / "report.html").is_file()
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_limit_stores_its_bracket_without_fingerprint(
     how: signal.Signals, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -118,6 +118,15 @@ def test_strength_domain_grows_with_cohesion_and_shrinks_with_a_cut_off() -> Non
     assert StrengthDomain(bond, JointMaterial(0.6)).strength((0, 0, 1)) == 0
 
 
+@pytest.mark.parametrize("cohesion", [1e4, 1e5, 1e6])
+def test_joints_without_tension_carry_any_pressure_on_the_beds(cohesion: float) -> None:
+    """HiGHS took most of these unbounded programs for infeasible ones."""
+    for block in ((0.24, 0.06), (0.4, 0.175), (0.2, 0.2), (0.3, 0.6)):
+        domain = StrengthDomain(Bond(*block), JointMaterial(0.6, cohesion, 0.0))
+        assert domain.strength((0, -1, 0)) == domain.strength((0, -0.3, 0)) == math.inf
+        assert domain.strength((0, 1, 0)) == pytest.approx(0.0, abs=1e-6 * cohesion)
+
+
 @pytest.mark.parametrize("unit", [1e-90, 1e-12, 1e12, 1e90])
 def test_strength_does_not_depend_on_the_unit_of_the_direction(unit: float) -> None:
     """Stresses in Pa, MPa or any other unit: the boundary stress is the same. It was once inf or negative."""

@@ -63,7 +63,7 @@ def test_legend_lists_only_what_is_drawn(has_curve: bool, tmp_path: Path) -> Non
     predictions, _ = predict(walls, [rung], scenes_of(walls, [rung]), tmp_path, jobs=1)
     lines = card(predictions).axes[0].get_legend_handles_labels()
     assert all(len(np.ravel(line.get_xdata())) for line in lines[0])  # type: ignore[attr-defined]
-    assert ("peaks of its cycles" in lines[1]) == has_curve
+    assert ("measured, peaks of its cycles" in lines[1]) == has_curve
 
 
 @pytest.mark.parametrize("mode", ["L", "1", "RGB", "P"])
