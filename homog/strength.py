@@ -25,8 +25,8 @@ ROUNDS = 100
 FIRST_TANGENTS = np.array([[1.0, 0.0], [0.6, 0.8], [0.6, -0.8], [0.0, 1.0], [0.0, -1.0]])
 """Points of the first tangents to a cap, as unit vectors of (p, √C_ss τ)."""
 
-TOLERANCES, INFEASIBLE = ("primal_feasibility_tolerance", "dual_feasibility_tolerance"), 2
-"""Tolerances of HiGHS, and the status by which `scipy.optimize.linprog` calls a program infeasible."""
+INFEASIBLE = 2
+"""Status by which `scipy.optimize.linprog` calls a program infeasible."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,11 @@ def _largest(balance: Array, rows: Array, right: Array) -> tuple[float, Array]:
             b_eq=np.zeros(4),
             bounds=free,
             method="highs",
-            options={"presolve": presolve, **dict.fromkeys(TOLERANCES, 1e-10)},
+            options={
+                "presolve": presolve,
+                "primal_feasibility_tolerance": 1e-10,
+                "dual_feasibility_tolerance": 1e-10,
+            },
         )
         if found.status != INFEASIBLE:
             break
