@@ -186,11 +186,17 @@ class Push(Lead):
     def apart(self, fast: Traverse, slow: Traverse) -> float:
         """Mean distance of the curves at two speeds, until half of the answer is left, relative to the answer."""
         (at, force), (other, before) = self.onward(slow.curve).T, self.onward(fast.curve).T
-        top = int(force.argmax())
-        lost = top + np.flatnonzero(force[top:] < COMPARED_DOWN_TO * force[top])
-        told = slice(int(lost[0]) if len(lost) else None)
+        told = slice(self._falling(slow.curve).stop)
         apart = np.abs(np.interp(at[told], np.maximum.accumulate(other), before) - force[told])
         return float(apart.mean()) / slow.answer if slow.answer > self.least else 0.0
+
+    @staticmethod
+    def _falling(curve: Array) -> slice:
+        """Rows of a curve ``(n, 2)`` from its largest multiplier to half of that."""
+        force = curve[:, 1]
+        top = int(force.argmax())
+        lost = top + np.flatnonzero(force[top:] < COMPARED_DOWN_TO * force[top])
+        return slice(top, int(lost[0]) if len(lost) else None)
 
     def failing(self, curve: Array) -> int:
         """Row of a curve ``(n, 2)`` in which the wall fails: just after the peak, while it is nearly undeformed."""
@@ -245,10 +251,14 @@ class Push(Lead):
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on blocks that vibrate without end, as friction can make them: damping takes a part of the load."""
-        if traverse.drag <= tolerance * traverse.answer:
-            return ""
-        share = f"damping takes {two_digits(100 * traverse.drag / traverse.answer)} % of the load at its largest"
-        return f"blocks vibrate: {share}, and the wall may bear less by as much"
+        least, bears = tolerance * traverse.answer, "and the wall may bear less by as much"
+        if traverse.drag > least:
+            share = two_digits(100 * traverse.drag / traverse.answer)
+            return f"blocks vibrate: damping takes {share} % of the load at its largest, {bears}"
+        if traverse.late_drag > least:
+            share = two_digits(100 * traverse.late_drag / traverse.answer)
+            return f"blocks vibrate as the multiplier falls: damping takes up to {share} % of its largest, {bears}"
+        return ""
 
     def _damped(self, state: State) -> float:
         """Work of the damping of all bodies [J]."""
@@ -265,8 +275,9 @@ class Push(Lead):
         steps = max(peaks.windows, round(row_steps))
         lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows).tolist()
         most = power = speed * self._load
+        drags = list[float]()
         for parts in _parts(peaks.windows):
-            before, full_way = state.motion.copy(), 0.0
+            before, full_way, taken, told = state.motion.copy(), 0.0, self._damped(state), state.time
             for window, (part, length) in enumerate(zip(parts, lengths, strict=True), start=1):
                 since, damped = state.time, self._damped(state)
                 multiplier = run.drive(state, part * power, length, given=given)
@@ -277,6 +288,7 @@ class Push(Lead):
                     middle = state.copy()
             # The mean multiplier of a row belongs to the middle of the row.
             self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
+            drags.append((self._damped(state) - taken) / (float(np.mean(parts)) * power * (state.time - told)))
             seen.append((middle.motion, self.crushed(middle)))
             if len(traverse.rows) % STRIDE == 0:
                 self.observe(run, state, traverse.rows[-1].force)
@@ -290,6 +302,7 @@ class Push(Lead):
             power = min(most, power / max(went / full_way, 1 / POWER_GROWTH))
         else:
             traverse.verdict = "undecided"
+        traverse.late_drag = max(drags[self._falling(traverse.curve[1:])], default=0.0)
         self.conclude(traverse, peaks, seen)
         # The drag was seen in place of the inertia, which is no part of a push whose power is kept.
         traverse.drag, traverse.inertia = traverse.inertia, 0.0

@@ -45,6 +45,7 @@ class Traverse:
     unseen: float = 0.0  # by how much the answer may be larger: means over windows flatten peaks
     inertia: float = 0.0  # by how much smaller, as bodies accelerate; in settlements both are due to loosened friction
     drag: float = 0.0  # part of the answer of a push that damping takes
+    late_drag: float = 0.0  # largest part of the force that damping takes as a pushed wall loses half of its answer
     crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # permanent closure at the joints' ends there [m]
     is_shape: bool = False  # whether the motion is the wall's deformed shape, far from that as built
     gone: float = 0.0  # sum over the rows of a push of how far the farthest blocks moved [m]

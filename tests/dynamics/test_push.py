@@ -1,6 +1,7 @@
 """Walls pushed far by live loads: blocks rotating about their toes, walls from their limit load on, how pushes end."""
 
 import math
+import re
 from dataclasses import replace
 from typing import Any, cast
 
@@ -279,6 +280,29 @@ def test_block_with_crushing_toe_pushed_at_point() -> None:
     outcome = dem_dynamic(scene, displacements="finite", distance=0.01)
     exact = weight * (WIDTH - weight / (crushing * 0.12)) / 2 / HEIGHT
     assert outcome.multiplier == pytest.approx(exact, rel=0.03)  # the joint points resolve crushing to 3 %
+
+
+@pytest.mark.parametrize("stiffness", [1e10, 1e12])
+def test_block_that_turns_on_a_crushing_toe_follows_its_exact_curve(stiffness: float) -> None:
+    """A length c = W / (f t) of the toe is crushed, about whose inner end the block turns; W acts in its middle.
+
+    Stiff points of the toe stick and slide in turns, and the message tells what damping takes of the load.
+    """
+    width, height, thickness, crushing = 0.5, 1.5, 0.3, 3e5
+    springs = {"joint__normal_stiffness": stiffness, "joint__shear_stiffness": 0.4 * stiffness}
+    toe = {"joint__compressive_strength": crushing, "joint__cap_shear": 0, "joint__friction": 1.2}
+    scene = courses([[1]], width, height, wall__thickness=thickness, block__density=2000.0, **springs, **toe)
+    outcome = dem_dynamic(scene, displacements="finite")
+    c = scene.mass[0] * 9.81 / (crushing * thickness)
+    angle = np.linspace(0.0, 0.4, 1000)
+    cosine, sine, arm = np.cos(angle), np.sin(angle), width / 2 - c
+    exact = (arm * cosine - height / 2 * sine + c / 2) / (arm * sine + height / 2 * cosine)
+    moved, load = outcome.curve[outcome.curve[:, 1].argmax() :].T
+    error = load / exact[0] - np.interp(moved, c * cosine + height * sine - c, exact / exact[0])
+    damped = re.search(r"vibrate as the multiplier falls: damping takes up to (\S+) %", outcome.message)
+    assert (damped is None) == (stiffness < 1e11)
+    told = 0.0 if damped is None else float(damped[1]) / 100
+    assert -0.005 < error.min() < error.max() < 0.015 + told
 
 
 @pytest.mark.parametrize(
