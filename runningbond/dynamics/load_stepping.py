@@ -229,9 +229,9 @@ class _Search:
 
         If joints are soft relative to the load, one more step displaces such a wall farther than a collapse displaces
         others, and all the more if they become softer as they open. Walls without weight approach the load under which
-        they fell in a different way.
+        they fell in a different way, unless their joints do so.
         """
-        if self.run.system.weightless:
+        if self.run.system.weightless and self.criteria.softness == 1:
             return self.criteria
         moved = borne.motion - self.result.rests[0][1].motion
         come = self.run.system.farthest(moved, self.criteria.collapse)

@@ -391,3 +391,32 @@ def test_joints_at_nine_points_have_the_same_strength_however_soft_they_are(stif
     assert outcome.lower is not None
     assert outcome.upper is not None
     assert outcome.lower <= 0.2 / (5 * 0.15) <= outcome.upper
+
+
+@pytest.mark.parametrize("energy", [None, 1e4])
+def test_soft_joints_at_nine_points_do_not_fall_under_a_dead_load_that_they_bear(energy: float | None) -> None:
+    """A column under nine tenths of the push that tips it, W b / 2h: called infeasible, although it bears the rest."""
+    width, height, count = 0.4, 2.0, 10
+    weight = 2000 * 9.81 * width * height * 0.12
+    tips = weight * width / 2 / height
+    top = {"kind": "point", "at": [0.0, height]}
+    load = {"gravity": 9.81, "dead": {**top, "force": [0.9 * tips, 0.0]}, "live": {**top, "force": [1.0, 0.0]}}
+    joint = {"friction": 1.0, "normal_stiffness": 1e9, "shear_stiffness": 4e8, "compressive_strength": 1e12}
+    joint |= {} if energy is None else {"compressive_fracture_energy": energy}
+    scene = courses([[1]] * count, width, height / count, block__density=2000.0, joint=joint, load=load)
+    outcome = dem_dynamic(scene)
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx(0.1 * tips, rel=0.01)
+
+
+@pytest.mark.parametrize("stiffness", [1e10, 1e11])
+def test_strength_of_weightless_joints_at_nine_points_does_not_depend_on_their_stiffness(stiffness: float) -> None:
+    """Bent at its foot by f_t b² t / 2: the joint tears off from one edge to the other. It was 8 % too low."""
+    tension, width, count, height = 2e5, 0.4, 8, 0.125
+    joint = {"friction": 0.7, "cohesion": 2 * tension, "tensile_strength": tension, "compressive_strength": 1e9}
+    joint |= {"normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness}
+    push = {"kind": "point", "at": [0.0, count * height], "force": [1.0, 0.0]}
+    scene = courses([[1]] * count, width, height, joint=joint, load={"gravity": 0.0, "live": push})
+    outcome = dem_dynamic(scene)
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx(tension * width**2 * 0.12 / 2 / (count * height), rel=0.01)
