@@ -4,7 +4,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from os.path import normpath
 from pathlib import Path
 from typing import Any
 
@@ -108,9 +107,9 @@ def fragility(
     if isinstance(records, (str, bytes)) or not isinstance(records, Iterable):
         raise SceneError("records", "must be a list of files", records)
     names = [str(record) for record in records]
-    for name, times in Counter(map(normpath, names)).items():
+    for name, times in Counter((Path(wall.folder) / name).resolve() for name in names).items():
         if times > 1:
-            raise SceneError("records", f"must name each record once, and name {Path(name).name} {times} times")
+            raise SceneError("records", f"must name each record once, and name {name.name} {times} times")
     runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)
     levels: dict[bool, list[float]] = {True: [], False: []}  # by whether the wall fell
     for name, *answer in zip(names, *(runs[key] for key in ("status", "multiplier", "lower", "upper")), strict=True):

@@ -58,7 +58,7 @@ def _read(table: Table, block_names: Sequence[str], joint_names: Sequence[str]) 
     table.finish()
     key = table.key(way)
     if way == "box":
-        value = read_box(key, value)
+        value = read_box(key, value, flat=True)
     elif way == "layer" and not isinstance(value, str):
         raise SceneError(key, "must be the name of a layer", value)
     elif way == "blocks":

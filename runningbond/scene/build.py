@@ -14,7 +14,7 @@ from .bond import Bond
 from .checks import check_built
 from .cracks import cut_in_half
 from .errors import SceneError
-from .history import History
+from .ground import strip_below, strip_reach
 from .loads import Load
 from .materials import BlockMaterial, JointMaterial, table_of
 from .ranges import one_of
@@ -25,13 +25,6 @@ from .supports import NO_PINS, SUPPORT_KINDS, Pins, SupportKind, corner_pins, fi
 from .ties import Tie, place_ties
 
 Material = TypeVar("Material", BlockMaterial, JointMaterial)
-
-GROUND_REACH = 30.0
-"""Reach of moving ground beyond either end of the wall, in its longer side: farther than records make walls slide.
-
-Slip is measured from the ground's corners, so its rounding error grows with the reach: at 10 000, walls with stiff
-joints never come to rest.
-"""
 
 
 def build_scene(
@@ -159,9 +152,9 @@ def _bodies(
 ) -> tuple[Blocks, Beam | None, int]:
     """All bodies (blocks of the wall, the beam, grounds), the beam with its block number, and the number of grounds."""
     blocks = Blocks.from_polygons(polygons)
-    if not grounds and support == "base":
-        shaken = any(isinstance(live, History) for live in load.live)
-        grounds = [_strip_below(blocks, GROUND_REACH if shaken else 1.0)]
+    reach = strip_reach(support, load)
+    if not grounds and reach is not None:
+        grounds = [strip_below(blocks, reach)]
     settlements = [live for live in load.live if isinstance(live, Settlement)]
     grounds = cut_ground(grounds, settlements, blocks.tolerance)
     bodies = [*polygons]
@@ -190,12 +183,3 @@ def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
     inner = (a == b) & (a >= 0) & movable
     order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
     return Joints(joints.block[order], joints.ends[order], inner[order])
-
-
-def _strip_below(blocks: Blocks, far: float) -> Array:
-    """Ground that extends `far` sizes of the wall beyond either end; one is enough for a toppling wall to land on."""
-    low, high = blocks.extent()
-    size = max(high - low)
-    depth, reach = 0.1 * size, far * size
-    left, right, top = low[0] - reach, high[0] + reach, low[1]
-    return np.array([[left, top - depth], [right, top - depth], [right, top], [left, top]])

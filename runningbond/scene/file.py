@@ -10,6 +10,7 @@ from .assignment import ANY, BEAM, GROUND, read_assignments
 from .beam import read_beam
 from .build import build_scene
 from .errors import SceneError, keys_of
+from .ground import strip_reach
 from .loads import read_load
 from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Softening, Stiffness, check_friction
 from .outlines import read_outlines
@@ -63,6 +64,8 @@ def _title(text: str) -> str:
     title = " ".join(text.split())
     if any(letter < " " or letter in "\ufffe\uffff" for letter in title):  # none of them is allowed in XML
         raise SceneError("title", "must be a string without control characters", title)
+    if any("\ud800" <= letter <= "\udfff" for letter in title):  # of file names that are not UTF-8
+        raise SceneError("title", "must be Unicode text, without lone surrogates", ascii(title))
     return title
 
 
@@ -116,7 +119,7 @@ def _scene(content: dict[str, Any], folder: Path, default_title: str) -> Scene:
     support.finish()
     loads = read_load(load, folder, driven=beam is not None and beam.drive is not None)
     thickness = wall.number("thickness", ABOVE_ZERO)
-    outlines = read_outlines(wall, folder, thickness, block_names)
+    outlines = read_outlines(wall, folder, thickness, block_names, strip=strip_reach(kind, loads))
     wall.finish()
     return build_scene(
         title,

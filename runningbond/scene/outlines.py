@@ -54,7 +54,9 @@ class Outlines:
     notes: tuple[str, ...] = ()
 
 
-def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequence[str]) -> Outlines:
+def read_outlines(
+    wall: Table, folder: Path, thickness: float, block_names: Sequence[str], *, strip: float | None = None
+) -> Outlines:
     """Read the outlines that the table of a wall describes.
 
     Parameters
@@ -65,6 +67,8 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
         Out-of-plane thickness of the wall [m].
     block_names
         Names of the materials that blocks may have.
+    strip
+        Reach, in sizes of the wall, of the strip of ground that is laid below blocks without one; None for none.
 
     Raises
     ------
@@ -76,14 +80,14 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
         from .drawings import METRES, read_drawing  # only now: healing needs a good part of scipy
 
         path, units = folder / wall.text("drawing"), wall.choice("units", METRES)
-        drawing = read_drawing(path, units, thickness=thickness, **_corrections(wall))
+        drawing = read_drawing(path, units, thickness=thickness, strip=strip, **_corrections(wall))
         return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)
     if "outlines" in wall:
         from .drawings import METRES, listed_outlines
 
         blocks, grounds = wall.outlines("outlines"), wall.outlines("ground") if "ground" in wall else []
         scale = METRES[wall.choice("units", METRES, "m")]
-        listed = listed_outlines(blocks, grounds, scale, **_corrections(wall))
+        listed = listed_outlines(blocks, grounds, scale, strip=strip, **_corrections(wall))
         return Outlines(listed.blocks, listed.grounds, notes=listed.notes)
     width = wall.number("block_width", ABOVE_ZERO)
     heights = _course_heights(wall)

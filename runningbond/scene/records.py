@@ -28,7 +28,7 @@ PEER_UNITS = {
 NAMES = re.compile(r"[\"']?(?!(nan|inf)\b)[^\W\d_]", re.IGNORECASE)
 """Beginning of a first row that holds the names of the columns."""
 
-DECIMAL = re.compile(r"[^,.]*(\d,\d[^,.]*)?")
+DECIMAL = re.compile(r"[^,]*|[^,.]*\d,\d[^,.]*")
 """A word in which a comma, if there is one, is a decimal comma."""
 
 GAP_STEPS, FEWEST_ROWS = 5.0, 8
@@ -100,10 +100,15 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
 
 
 def _words(text: str) -> list[str]:
-    """The words of a row; if semicolons or blanks separate them, commas are decimal commas."""
+    """The words of a row; if semicolons or blanks separate them, commas are decimal commas.
+
+    Commas beside blanks, or in words with points, are separators as well, unless there are semicolons.
+    """
     words = re.split(r"\s*;\s*|\s+", text)
     if len(words) > 1 and all(map(DECIMAL.fullmatch, words)):
         return [word.replace(",", ".") for word in words]
+    if ";" in text:
+        return words
     return re.split(r"[,;]|\s+", re.sub(r"\s*([,;])\s*", r"\1", text))
 
 

@@ -180,12 +180,14 @@ def _at_corner(place: float, corners: Array, reach: float) -> float:
     return float(corners[apart.argmin()]) if apart.min(initial=np.inf) <= reach else place
 
 
-def read_box(key: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Check the two corners of a box: lower left, then upper right."""
+def read_box(key: str, value: Any, *, flat: bool = False) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Check the two corners of a box: lower left, then upper right; the box may be `flat`, a line or a point."""
     corners = list(value) if isinstance(value, (list, tuple, np.ndarray)) else []
     if len(corners) != 2:
         raise SceneError(key, "must be two corners [[x0, y0], [x1, y1]]", value)
     low, high = (vector(f"{key}[{k}]", corner) for k, corner in enumerate(corners))
-    if not (low[0] < high[0] and low[1] < high[1]):
+    if not (low[0] <= high[0] and low[1] <= high[1]):
         raise SceneError(key, "must have its lower left corner first, then the upper right one", value)
+    if not flat and (low[0] == high[0] or low[1] == high[1]):
+        raise SceneError(key, "must have a width and a height", value)
     return low, high

@@ -75,6 +75,9 @@ def test_each_record_counts_once(tmp_path: Path) -> None:
     )
     with pytest.raises(rb.SceneError, match="records: must name each record once, and name a.csv 2 times"):
         rb.fragility(wall, [str(tmp_path / "a.csv"), str(tmp_path / "." / "a.csv")], "dem-dynamic")
+    wall.to_toml(tmp_path / "wall.toml")
+    with pytest.raises(rb.SceneError, match="records: must name each record once, and name a.csv 2 times"):
+        rb.fragility(rb.read(tmp_path / "wall.toml"), ["a.csv", str(tmp_path / "a.csv")], "dem-dynamic")
 
 
 def test_records_without_collapse_count_as_lower_bounds() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from runningbond.joints import wall_points
 from runningbond.results.scene_arrays import scene_from_arrays, scene_to_arrays
-from runningbond.scene import Scene, read_scene
+from runningbond.scene import Scene, SceneError, read_scene
 from tests.walls import content, panel, write_toml
 
 from .test_scene import GROUND
@@ -30,6 +30,16 @@ def names_of_blocks(scene: Scene) -> list[str]:
 
 def names_of_joints(scene: Scene) -> list[str]:
     return [scene.joint_materials[k].name for k in scene.material_of_joint]
+
+
+def test_box_without_height_chooses_the_bed_joints_on_it() -> None:
+    """Boxes include their border. Such a box was refused for its corners, which are in the right order."""
+    scene = assigned({"joint": "dust", "box": [[0, 0.06], [1.44, 0.06]]})
+    chosen = np.array(names_of_joints(scene)) == "dust"
+    level = scene.joints.ends[:, :, 1].mean(axis=1)
+    assert chosen.tolist() == (np.abs(level - 0.06) < 1e-9).tolist()
+    with pytest.raises(SceneError, match="must have its lower left corner first"):
+        assigned({"joint": "dust", "box": [[0, 0.07], [1.44, 0.06]]})
 
 
 def test_later_entries_win() -> None:

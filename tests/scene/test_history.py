@@ -190,12 +190,19 @@ def test_resolution_of_a_pulse_is_a_two_hundredth_of_its_period(kind: str) -> No
 @pytest.mark.parametrize("part", [";", "\t", " ", " ; "])
 def test_commas_are_decimal_marks_if_columns_have_another_separator(part: str, tmp_path: Path) -> None:
     """Also with times in whole seconds, where the single comma of a row was once taken for a column separator."""
-    for time in (["0,00", "0,01", "0,02"], ["0", "1", "2"]):
+    for time in (["0,00", "0,01", "0,02"], ["0", "1", "2"], ["0.00", "0.01", "0.02"]):
         rows = (part.join(row) for row in zip(time, ("0", "-2,5", "1,5e-1"), strict=True))
         (tmp_path / "record.csv").write_text(f"t{part}a\n" + "\n".join(rows))
         record = read_record(tmp_path / "record.csv", "file")
         assert record.time.tolist() == [float(word.replace(",", ".")) for word in time]
         assert record.values.tolist() == [[0.0, 0.0], [-2.5, 0.0], [0.15, 0.0]]
+
+
+def test_word_with_comma_and_point_between_semicolons_is_no_number(tmp_path: Path) -> None:
+    """It was two columns: the wall was shaken vertically."""
+    (tmp_path / "record.csv").write_text("0.00;0\n0.01;1.000,5\n")
+    with pytest.raises(SceneError, match=r"line 2 = '1\.000,5': must be a number"):
+        read_record(tmp_path / "record.csv", "file")
 
 
 @pytest.mark.parametrize("head", ["TIME HISTORY IN UNITS OF", "TIME HISTORY  IN UNITS OF", "TIME SERIES IN UNITS OF"])

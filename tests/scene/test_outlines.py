@@ -63,6 +63,24 @@ def test_gaps_between_listed_stones_are_healed() -> None:
     assert sorted(wall.scene.joints.length) == pytest.approx([0.1, 0.2, 0.2], abs=1e-3)
 
 
+def test_stones_without_ground_are_healed_onto_the_strip_below_them() -> None:
+    """One foundation stone is 1 mm high. Healing broke the bearing of its neighbour, and no note told of the gap."""
+    lifted = np.array([[400, 1], [800, 1], [800, 200], [400, 200]])
+    stones = [*(shapely.box(x, y, x + 400, y + 200).exterior.coords[:-1] for x, y in ((0, 0), (0, 200), (400, 200)))]
+    stones = [*map(np.array, stones), lifted]
+    loose = rb.Wall.outlines(stones, units="mm", **THICK)
+    (note,) = loose.scene.notes
+    assert note.startswith("a gap of 0.001 m between block 3")
+    assert note.endswith("[wall] heal = 0.0011 would close it")
+    healed = rb.Wall.outlines(stones, units="mm", heal=0.002, **THICK)
+    on_ground = rb.Wall.outlines(stones, [GROUND], units="mm", heal=0.002, **THICK)
+    for wall in (healed, on_ground):
+        assert len(wall.scene.joints) == 6
+        assert wall.run("limit").multiplier == pytest.approx(0.6, rel=1e-6)
+    for kind in ("fixed-first-course", "corners"):
+        assert rb.Wall.outlines(stones, units="mm", support=kind, **THICK).scene.notes == ()
+
+
 @pytest.mark.parametrize(
     ("keys", "message"),
     [

@@ -161,6 +161,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         ({"load__live": POINT | {"force": [0, 0]}}, "load.live.force = [0.0, 0.0]: must not be zero"),
         ({"load__live": POINT | {"at": [1, 2, 3]}}, "load.live.at = [1, 2, 3]: must be a pair of finite numbers"),
         ({"title": 5}, "title = 5: must be a string"),
+        ({"title": "\ud800"}, "must be Unicode text, without lone surrogates"),
         ({"wall": {"drawing": "no.dxf", "units": "mm", "thickness": 0.1}}, "wall.drawing"),
         ({"wall": {"drawing": "no.dxf", "units": "miles", "thickness": 0.1}}, "wall.units = 'miles'"),
     ],

@@ -13,6 +13,7 @@ import shapely
 from ..arrays import Array
 from ..blocks import Blocks
 from ..errors import SceneError, place
+from ..ground import strip_below
 from ..polygons import smaller_sides, without_spikes
 from ..ranges import one_of
 from .compas import read_compas
@@ -73,6 +74,7 @@ def read_drawing(
     expand: float | None = None,
     heal: float | None = None,
     thickness: float | None = None,
+    strip: float | None = None,
 ) -> Drawing:
     """Read a DXF drawing or, if the name of the file ends in .json, a COMPAS assembly.
 
@@ -89,6 +91,9 @@ def read_drawing(
         Gaps and overlaps up to this width are closed afterwards [m]; None leaves them unchanged.
     thickness
         Thickness of the wall [m], which decides along which axis an assembly is viewed if several are possible.
+    strip
+        Reach, in sizes of the wall, of the strip of ground that is laid below an assembly without supports; None for
+        none.
 
     Raises
     ------
@@ -118,7 +123,7 @@ def read_drawing(
         notes += more
     if not blocks:
         raise SceneError(KEY, "is an assembly of supports; it needs at least one block", str(path))
-    return _together(Drawing(blocks, tuple(layers), grounds, tuple(notes)), expand, heal)
+    return _together(Drawing(blocks, tuple(layers), grounds, tuple(notes)), expand, heal, strip)
 
 
 def listed_outlines(
@@ -128,27 +133,38 @@ def listed_outlines(
     *,
     expand: float | None = None,
     heal: float | None = None,
+    strip: float | None = None,
 ) -> Drawing:
-    """Clean, expand and heal the outlines listed in a scene file, in units of `scale` [m], like those of a drawing."""
+    """Clean, expand and heal the outlines listed in a scene file, in units of `scale` [m], like those of a drawing.
+
+    Without ground, they may rest on a strip below the lowest of them, of a reach in sizes of the wall.
+    """
     outlines = [np.array(corners) * scale for corners in (*blocks, *grounds)]
     names = [f"wall.{key}[{k}]" for key, of in (("outlines", blocks), ("ground", grounds)) for k in range(len(of))]
     cleaned, spikes = _cleaned(outlines, names)
     drawing = Drawing(cleaned[: len(blocks)], (), cleaned[len(blocks) :], (spikes,) if spikes else ())
-    return _together(drawing, expand, heal)
+    return _together(drawing, expand, heal, strip)
 
 
-def _together(drawing: Drawing, expand: float | None, heal: float | None) -> Drawing:
+def _together(drawing: Drawing, expand: float | None, heal: float | None, strip: float | None) -> Drawing:
     """Expand the stones of a drawing, heal stones and ground, and add notes on remaining gaps and on slivers."""
     blocks, count, notes = drawing.blocks, len(drawing.blocks), drawing.notes
     if expand is not None:
         blocks, note = expanded(blocks, drawing.grounds, expand)
         blocks, notes = _cleaned(blocks, ["wall.expand"] * count)[0], (*notes, note)
-    outlines = [*blocks, *drawing.grounds]
+    laid = [] if strip is None or drawing.grounds else [strip_below(Blocks.from_polygons(blocks), strip)]
+    outlines = [*blocks, *drawing.grounds, *laid]
     if heal is not None:
         outlines, note = healed(outlines, heal)
         notes = (*notes, note) if note else notes
+    grounds = drawing.grounds if heal is None else outlines[count:]  # stones are healed onto the strip
     said = (missed_joints(outlines, heal or 0.0), _slivers(outlines))
-    return Drawing(outlines[:count], drawing.layers, outlines[count:], (*notes, *(note for note in said if note)))
+    return Drawing(
+        outlines[:count],
+        drawing.layers,
+        grounds,
+        (*notes, *(note for note in said if note)),
+    )
 
 
 def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:
