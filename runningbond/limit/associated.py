@@ -194,6 +194,8 @@ def _solved(system: Equilibrium) -> LimitState:
         if state is not None:
             return state
     forces = solve_forces(system, coulomb(system.strength))
+    if forces.status == "infeasible" and stands_under_dead_load(system.under_dead_load()) is False:
+        return LimitState(system, forces, rests=False)
     if forces.status in ("infeasible", "numerical"):  # if the interior point cannot decide, the simplex method does
         forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
     state = LimitState(system, forces)
@@ -338,6 +340,8 @@ def judge(state: LimitState) -> tuple[Status, str]:
         if system.has_support:
             return "unbounded", JAMMED
         return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
+    if program == "infeasible":  # at λ = 0 it has the same forces as the program of the dead load
+        return "undecided", "the wall is on the brink of falling under its dead load, within rounding"
     return "failed", f"the linear program was not solved: {program}"
 
 
@@ -379,12 +383,16 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def remarks(scene: Scene, message: str) -> str:
-    """A message, extended by notes on how ties and the beam were modelled."""
+def remarks(scene: Scene, message: str, *, certified: bool = False) -> str:
+    """A message, extended by notes on how ties and the beam were modelled, in `certified` collapses or in bounds."""
+    pressed = (
+        "the beam presses on the wall with at least its dead load; a wall that sinks as it slides may fall earlier"
+    )
+    free = "the beam is held at its height by whatever vertical force is needed"
     notes = {
         "ties count only by their yield force": len(scene.ties) > 0,
         "not included: friction due to tie.preload, which may hold the wall at these loads": scene.ties.preload.any(),
-        "the beam is held at its height by whatever vertical force is needed": len(scene.late_pins) > 0,
+        pressed if certified else free: len(scene.late_pins) > 0,
         "λ is the force on the beam [N]": len(scene.drive_path) > 0,
         "only the first direction of the beam's path counts": len(scene.drive_path) > 1,
     }

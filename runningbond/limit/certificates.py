@@ -53,9 +53,10 @@ def least_multiplier(certificate: Certificate) -> float:
 def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -> ForceSet | None:
     """Set of forces that obey Coulomb's law on a mechanism ``(nd,)``: zero where it opens, limiting where it slides.
 
-    A tie that lengthens is at yield, and one that shortens is slack. The reaction that holds a beam at its height can
-    only press it down, because a moving wall does not get lower. None for a mechanism whose blocks interpenetrate.
-    Jumps up to `still` times the largest motion count as zero.
+    A tie that lengthens is at yield, and one that shortens is slack. The reaction that holds a beam at its height only
+    presses it down: how much of the beam it lifts off a wall that sinks as it slides depends on the history, and if it
+    could lift all, every wall would slide under no load. None for a mechanism whose blocks interpenetrate. Jumps up to
+    `still` times the largest motion count as zero.
     """
     opening, slip = system.jumps(motion)
     largest = float(np.abs(motion).max(initial=0.0))

@@ -92,7 +92,9 @@ def limit_nonassociated(
         outcome = dead_load_fall(outcome, state)
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
-    return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
+    return replace(
+        outcome, message=remarks(scene, outcome.message, certified=True), seconds=time.perf_counter() - start
+    )
 
 
 def _refuse_crushing(scene: Scene) -> None:
@@ -268,7 +270,7 @@ def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bound
         return replace(outcome, lower=share, message=f"{programs}; lower is the associated bound")
     if bound is not None:
         message = f"{programs}; upper is the associated bound"
-        return replace(outcome, upper=system.live_unit * bound, message=message)
+        return replace(outcome, upper=system.load(bound), message=message)
     message = "forces within Coulomb's law balance any multiple of the live load"
     if result.growing and not result.interrupted:
         message = f"self-locking: {message}; {programs}, which does not exclude one"

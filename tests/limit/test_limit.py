@@ -712,3 +712,22 @@ def test_stone_wedged_between_rocks_may_take_any_larger_load() -> None:
     outcome = limit_nonassociated(scene_from_dict(tables))
     assert (outcome.lower, outcome.upper) == pytest.approx((9810.0, 9810.0))
     assert "at every load larger than 9,810 as well" in outcome.message
+
+
+def harmonic_stack(count: int, excess: float) -> Scene:
+    """A stack that leans out as far as it can, every block balanced on the edge of the next, and a little farther."""
+    x, blocks = 0.0, []
+    for k in range(count):
+        blocks.append(rectangle(x, 0.1 * k, 1.0, 0.1))
+        x += 0.5 / max(1, count - 1 - k) * (1 + excess)
+    return pile(blocks, 0.7, Lateral())
+
+
+@pytest.mark.parametrize("excess", [3e-8, 1e-9])
+def test_wall_on_the_brink_of_falling_under_its_dead_load_is_no_failure(excess: float) -> None:
+    """It falls, by less than the tolerance of the solver; one program finds forces, the other does not."""
+    outcome = limit(harmonic_stack(150, excess))
+    assert outcome.status in ("infeasible", "undecided")
+    assert outcome.status == "infeasible" or "on the brink of falling" in outcome.message
+    assert limit(harmonic_stack(150, 1e-6)).status == "infeasible"
+    assert limit(harmonic_stack(150, -1e-3)).status == "collapse"

@@ -173,6 +173,7 @@ def test_wall_slides_without_dilatancy_under_beam_at_fixed_height() -> None:
     outcome = run_model("limit-nonassociated", under_beam("fixed-height", 0.2))
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(0.2 * 3 * WEIGHT, rel=1e-7)
+    assert "a wall that sinks as it slides may fall earlier" in outcome.message
     outcome = run_model("limit-nonassociated", under_beam("fixed-height", 0.6))
     assert outcome.status == "undecided"
     assert "balance any multiple of the live load" in outcome.message
