@@ -89,7 +89,7 @@ def _late_shares(curve: Array) -> tuple[Array, Array]:
     return share, np.append(np.interp(start, value, share), share[value >= start])
 
 
-def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:
+def formed(curve: Array, tolerance: float, *, still: float = 0.0, is_small: bool = True) -> bool:
     """Whether a mechanism has formed under a settling support: its share no longer changes at the end of a path.
 
     Parameters
@@ -97,14 +97,16 @@ def formed(curve: Array, tolerance: float, *, still: float = 0.0) -> bool:
     curve : (n, 2) float
         Displacement, and share of the dead load.
     tolerance
-        Fraction of its total change by which a share may still change. An elastic wall sheds load too: almost none on a
-        short path, and evenly along it.
+        Fraction of its total change by which a share may still change: at small displacements on a path twice as long,
+        along its slope, at finite ones over the last tenth, because the shape goes on changing. An elastic wall sheds
+        load too: almost none on a short path, and evenly along it.
     still
         Change of a share that motion may have caused, which counts as none: it may be all the change there was.
     """
     share, late = _late_shares(curve)
     least = max(still, UNCHANGED)
-    return bool(np.ptp(late) <= min(tolerance, FINAL_PART / 2) * np.ptp(share) + least)
+    part = FINAL_PART * tolerance if is_small else min(tolerance, FINAL_PART / 2)
+    return bool(np.ptp(late) <= part * np.ptp(share) + least)
 
 
 def shedding(curve: Array) -> tuple[bool, str]:

@@ -56,7 +56,7 @@ class SupportSettlement(Lead):
 
     def has_formed(self, traverse: Traverse, tolerance: float, *, still: float) -> bool:
         """Whether the share no longer changes at the end of the path."""
-        return formed(traverse.curve, tolerance, still=still)
+        return formed(traverse.curve, tolerance, still=still, is_small=self.is_small)
 
     def unfinished(self, curve: Array) -> tuple[str, bool]:
         """Note on a share that still changes, and whether it can only become smaller."""

@@ -80,11 +80,17 @@ def test_late_growth_is_that_over_the_last_tenth(force: Array, grown: float) -> 
 def test_share_that_still_changes_is_of_no_mechanism(
     late: float, tolerance: float, still: float, expected: bool
 ) -> None:
-    """It falls by 1, of which `late` in the last tenth; no tolerance is above half a tenth. Motion may change it."""
+    """It falls by 1, of which `late` in the last tenth; no tolerance is above half a tenth. Motion may change it.
+
+    At small displacements ten times `late`, the change on a path twice as long, must be within the tolerance.
+    """
     share = np.interp(X, [0, 0.9, 1], [1, late, 0])
-    assert formed(np.column_stack([X, share]), tolerance, still=still) == expected
     back = np.column_stack([np.concatenate([X, X[-2::-1]]), np.concatenate([share[::-1], share[1:]])])
-    assert formed(back, tolerance, still=still) == expected
+    small = late <= 0.1 * tolerance + still + 1e-12
+    for curve in (np.column_stack([X, share]), back):
+        assert formed(curve, tolerance, still=still, is_small=False) == expected
+        assert formed(curve, tolerance, still=still) == small
+        assert formed(curve, 10.1 * late, still=still)
 
 
 @pytest.mark.parametrize("rows", [2, 3, 7])
