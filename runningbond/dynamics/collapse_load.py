@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from runningbond.joints import JointPoints, ends_note, stiffness_note
 from runningbond.joints.stiffness import GIVES, rocking_softness
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
-from runningbond.results.outcome import joined
+from runningbond.results.outcome import joined, number
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria, crushing_note
@@ -155,13 +155,12 @@ def collapse_by_steps(
                 result = _search(scene, run, first, tolerance, criteria, above, elastic, observe)
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    # At points, joints that crush may carry more than limit analysis proves for their whole length.
-    if above is not None and all(each.compressive_strength is None for each in scene.materials_of_joints):
+    if above is not None and _is_proved_at_points(scene):
         result.exclude_rests_above(above + max(tolerance * above, smallest_width(run, criteria)))
     if result.rests:
         outcome = replace(outcome, **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears)
+    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears, above)
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves under its dead load as far as counts as collapse"
@@ -230,8 +229,9 @@ def _judge(
     is_self_locking: Callable[[], bool],
     criteria: Criteria,
     bears: Callable[[], bool],
+    above: float | None,
 ) -> Outcome:
-    """Outcome of a search."""
+    """Outcome of a search; limit analysis proves that nothing stands `above` a load, or that is None."""
     if result.borne is None:
         if result.verdict == "collapse":
             status, message = fall_under_dead_load(run.interface.law, bears)
@@ -252,7 +252,7 @@ def _judge(
     if result.upper is None or result.lower is None or result.fallen is None:
         if excluded:
             return replace(outcome, lower=result.lower, message=excluded)
-        return _never_fallen(outcome, scene, run, result, is_self_locking)
+        return _never_fallen(outcome, scene, run, result, is_self_locking, above)
     motion = _mechanism(scene, run, _fall(run, result, result.fallen))
     # A load that rises by a step overshoots to at most twice the step, and what breaks stays broken.
     overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
@@ -294,8 +294,18 @@ def _unaccounted(run: Run, result: LoadSteps, fallen: State) -> float:
     return lost if counted is None else counted
 
 
+def _is_proved_at_points(scene: Scene) -> bool:
+    """Whether what limit analysis proves for whole joints holds for their points, which may crush later."""
+    return all(each.compressive_strength is None for each in scene.materials_of_joints)
+
+
 def _never_fallen(
-    outcome: Outcome, scene: Scene, run: Run, result: LoadSteps, is_self_locking: Callable[[], bool]
+    outcome: Outcome,
+    scene: Scene,
+    run: Run,
+    result: LoadSteps,
+    is_self_locking: Callable[[], bool],
+    above: float | None,
 ) -> Outcome:
     """Outcome of a wall that did not fall under any load."""
     self_locking = is_self_locking()
@@ -306,13 +316,13 @@ def _never_fallen(
     if result.far and result.borne is not None:
         moved = np.hypot(*run.system.motion_of_blocks(result.borne.motion - result.rests[0][1].motion)[:, :2].T)
         block = scene.blocks.name(int(moved.argmax()))
-        message += (
-            f", at which {block} has moved {moved.max():.2g} m: too far for small displacements, or nothing holds it"
-        )
+        message += f", at which {block} has moved {moved.max():.2g} m: too far for small displacements"
+        message += ", or nothing holds it" if above is None else f"; limit analysis proves {number(above)} too much"
     if result.verdict != "stable":
         message = "the budget ran out: the wall neither rested nor fell"
         message += ", though joint forces balance any multiple of the load" if self_locking else ""
-    return replace(outcome, lower=result.lower, message=message)
+    proved = above is not None and above >= (result.lower or 0.0) and _is_proved_at_points(scene)
+    return replace(outcome, lower=result.lower, upper=above if proved else None, message=message)
 
 
 def _mechanism(scene: Scene, run: Run, motion: Array) -> Array:

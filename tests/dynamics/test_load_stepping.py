@@ -420,3 +420,16 @@ def test_strength_of_weightless_joints_at_nine_points_does_not_depend_on_their_s
     outcome = dem_dynamic(scene)
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(tension * width**2 * 0.12 / 2 / (count * height), rel=0.01)
+
+
+def test_wall_that_moves_too_far_at_rest_has_the_bound_of_limit_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("LARGEST_DISPLACEMENT", "LARGEST_ELASTIC"):
+        monkeypatch.setattr(f"runningbond.dynamics.collapse_load.{name}", 1e-9)
+    scene = courses([[1]] * 3, joint__mortar=MORTAR)
+    outcome = dem_dynamic(scene)
+    assert outcome.status == "undecided"
+    assert "limit analysis proves" in outcome.message
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < 0.9 * outcome.upper
+    assert outcome.upper == pytest.approx(limit(scene).multiplier, rel=1e-8)
