@@ -26,6 +26,9 @@ RESOLVED = 10
 GROWTH = 1 / 8
 """Largest step after the first ones, as a fraction of the load."""
 
+FEW_POINTS = 4.0
+"""Softness of joints that become little softer as they open: 1 for two points, 2 for the elements of `fem`."""
+
 MOST_UNDECIDED = 4
 """Number of adjacent undecided loads that ends a search if any load led to collapse; half as many end it otherwise.
 Each has cost the whole budget."""
@@ -229,9 +232,9 @@ class _Search:
 
         If joints are soft relative to the load, one more step displaces such a wall farther than a collapse displaces
         others, and all the more if they become softer as they open. Walls without weight approach the load under which
-        they fell in a different way, unless their joints do so.
+        they fell in a different way, unless their joints have many points.
         """
-        if self.run.system.weightless and self.criteria.softness == 1:
+        if self.run.system.weightless and self.criteria.softness <= FEW_POINTS:
             return self.criteria
         moved = borne.motion - self.result.rests[0][1].motion
         come = self.run.system.farthest(moved, self.criteria.collapse)
