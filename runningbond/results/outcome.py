@@ -37,8 +37,8 @@ class Outcome:
         Collapse mechanism: displacement of each block's centroid [m] and rotation [rad], scaled so that the fastest
         corner moves by one metre. Empty if there is none.
     moved
-        Factor [–] by which `motion` is that of a wall that has turned so far that its displacements are not linear in
-        its rotations: the mechanism is its deformed shape. None for a mechanism in the shape as built.
+        Factor by which `motion` is multiplied to give the deformed shape of a wall that has turned so far that its
+        displacements are not linear in its rotations. None for a mechanism in the shape as built.
     force : (np, 2) float
         Normal and tangential force at each contact point [N], tension positive. Empty if not known.
     pull : (nt, 1) float
