@@ -338,7 +338,7 @@ def test_swaying_of_slender_pier_under_dead_load_is_not_collapse(model: Any, lea
 def test_lintel_that_tips_onto_the_ground_is_no_wall_that_stands(joint: dict[str, Any]) -> None:
     """Its centroid comes down by a ninth of its size before its free end lands, where it would come to rest."""
     stones = [[(0, 0), (0.4, 0), (0.4, 0.2), (0, 0.2)], [(0, 0.2), (1.6, 0.2), (1.6, 0.4), (0, 0.4)]]
-    springs = {"friction": 0.7, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    springs: dict[str, Any] = {"friction": 0.7, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     wall = Wall.outlines(stones, thickness=0.2, density=2000.0, live={"kind": "lateral"}, **springs, **joint)
     for displacements in ("small", "finite"):
         assert wall.run("dem-dynamic", displacements=displacements).status == "infeasible"
