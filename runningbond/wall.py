@@ -347,8 +347,8 @@ class Wall:
         scale
             Factor on the record, λ.
         settings
-            ``points`` ``(k, 2)`` [m], which are followed instead of the upper corners, and ``after``, the time for
-            which the wall is followed after a block has fallen [s].
+            ``points`` ``(k, 2)`` [m], which are followed instead of the upper corners; ``rows`` per second; ``after``,
+            the time for which the wall is followed after a block has fallen [s].
         """
         from .models import respond
         from .pictures.response import DrawnResponse
