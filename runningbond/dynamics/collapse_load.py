@@ -162,7 +162,9 @@ def collapse_by_steps(
         outcome = replace(outcome, **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
     outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears, above)
-    stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
+    # Of a fall under the dead load, the toe bears all when the wall has moved as far as counts as collapse.
+    counts = collapse * (1.0 if result.rests else softness)
+    stiffness = _note_on_stiffness(scene, run, result, float(np.min(counts * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves under its dead load as far as counts as collapse"
         outcome = replace(outcome, status="undecided", message=message, motion=np.zeros((0, 3)))

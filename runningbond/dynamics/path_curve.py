@@ -26,6 +26,9 @@ SCATTERS = 3.0
 UNCHANGED = 1e-6
 """Change of the share on a support that counts as none, in addition to the tolerance times its total change."""
 
+WAVERS = 1e-4
+"""Fraction of the total change of a share by which it may waver from one large step to the next."""
+
 PATH_ROUNDING = 1e-9
 """Difference of two displacements, relative to the largest one, that is only rounding."""
 
@@ -112,10 +115,10 @@ def formed(curve: Array, tolerance: float, *, still: float = 0.0, is_small: bool
 def shedding(curve: Array) -> tuple[bool, str]:
     """Whether the share on a support falls at the end of a path, and the name of the change: the share may be negative.
 
-    If the share hardly changes over the last part, the whole leg counts: it wavers a little in large steps.
+    If the share only wavers over the last part, the whole leg counts.
     """
     share, late = _late_shares(curve)
-    changes = abs(late[-1] - late[0]) > UNCHANGED + LITTLE * np.ptp(share)
+    changes = abs(late[-1] - late[0]) > UNCHANGED + WAVERS * np.ptp(share)
     first, last = late[0] if changes else share[0], share[-1]
     return bool(last <= first), "sheds load" if abs(last) <= abs(first) else "takes up load"
 

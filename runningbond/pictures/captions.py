@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
-from .deformed_shape import Extent
+from .deformed_shape import Extent, farthest_motion
 from .joint_state import JointState
-from .mechanism import mechanism_warning
+from .mechanism import mechanism_shape, mechanism_warning
 from .quantities import signed
 from .style import AT_REST, CRUSHED, DARK, DRAWN, FASTEST, HELD, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
@@ -150,9 +150,10 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
     what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
     if outcome.status == "infeasible":
         what = "under dead load; its fastest corner"
-    if outcome.moved is not None:
-        what = "deformed shape; its farthest corner"
-    size = f"{what} is drawn to move {max(DRAWN * scene.size, outcome.moved or 0.0):.2g} m"
+    moves, shape = DRAWN * scene.size, mechanism_shape(scene, outcome) if outcome.moved is not None else None
+    if shape is not None:
+        what, moves = "deformed shape; its farthest corner", shape.scale * farthest_motion(shape.displacement)
+    size = f"{what} is drawn to move {moves:.2g} m"
     return Caption(title, load, [size, warning] if warning else [size], key)
 
 

@@ -409,6 +409,18 @@ def test_soft_joints_at_nine_points_do_not_fall_under_a_dead_load_that_they_bear
     assert outcome.multiplier == pytest.approx(0.1 * tips, rel=0.01)
 
 
+@pytest.mark.parametrize("excess", [1.02, 1.2])
+def test_soft_column_that_tips_under_its_dead_load_is_infeasible(excess: float) -> None:
+    """Its toe overlaps the ground by what is too much for a wall at rest, but not for one that falls."""
+    weight = 2000 * 9.81 * 0.2 * 0.75 * 0.12
+    top = {"kind": "point", "at": [0.0, 0.75]}
+    push = {**top, "force": [excess * weight * 0.1 / 0.75, 0.0]}
+    joint = {"friction": 1.0, "normal_stiffness": 1e9, "shear_stiffness": 4e8, "compressive_strength": 1e12}
+    load = {"gravity": 9.81, "dead": push, "live": {**top, "force": [1.0, 0.0]}}
+    scene = courses([[1]] * 5, 0.2, 0.15, block__density=2000.0, joint=joint, load=load)
+    assert dem_dynamic(scene).status == "infeasible"
+
+
 @pytest.mark.parametrize("stiffness", [1e10, 1e11])
 def test_strength_of_weightless_joints_at_nine_points_does_not_depend_on_their_stiffness(stiffness: float) -> None:
     """Bent at its foot by f_t b² t / 2: the joint tears off from one edge to the other. It was 8 % too low."""

@@ -93,6 +93,13 @@ def test_share_that_still_changes_is_of_no_mechanism(
         assert formed(curve, 10.1 * late, still=still)
 
 
+def test_share_that_rises_slowly_after_a_large_fall_takes_up_load() -> None:
+    """By half a percent of its change over the last tenth, which no formed mechanism does: its end is a lower bound."""
+    share = np.interp(X, [0, 0.3, 0.9, 1], [0.5, -0.02, 0.03, 0.0326])
+    assert not formed(np.column_stack([X, share]), 0.01)
+    assert shedding(np.column_stack([X, share])) == (False, "takes up load")
+
+
 @pytest.mark.parametrize("rows", [2, 3, 7])
 def test_even_change_in_few_rows_is_of_no_mechanism(rows: int) -> None:
     """Only the last row lies in the last tenth, and a single row does not change."""

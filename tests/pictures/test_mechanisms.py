@@ -140,6 +140,8 @@ def test_blocks_that_turn_together_by_large_angles_stay_in_contact(changes: dict
     assert mechanism_warning(scene, result.outcome) == ""
     shape = mechanism_shape(scene, result.outcome)
     assert shape is not None
+    drawn = float(np.hypot(*(shape.placed - shape.points).T).max())
+    assert f"is drawn to move {drawn:.2g} m" in mechanism_caption(scene, result.outcome, [], drawn=True).notes[0]
     edges = np.diff(shape.placed.reshape(-1, 4, 2), axis=1)
     assert np.hypot(*edges.T) == pytest.approx(np.hypot(*np.diff(shape.points.reshape(-1, 4, 2), axis=1).T), rel=1e-2)
     if scene.settlement is None:

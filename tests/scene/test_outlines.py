@@ -77,6 +77,8 @@ def test_stones_without_ground_are_healed_onto_the_strip_below_them() -> None:
     for wall in (healed, on_ground):
         assert len(wall.scene.joints) == 6
         assert wall.run("limit").multiplier == pytest.approx(0.6, rel=1e-6)
+    pier = [shapely.box(0, y, 500, y + 400).exterior.coords[:-1] for y in (0, 408)]
+    assert len(rb.Wall.outlines(pier, units="mm", heal=0.01, **THICK).scene.joints) == 2  # the strip sets no limit
     for kind in ("fixed-first-course", "corners"):
         assert rb.Wall.outlines(stones, units="mm", support=kind, **THICK).scene.notes == ()
 

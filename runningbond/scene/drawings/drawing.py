@@ -155,7 +155,7 @@ def _together(drawing: Drawing, expand: float | None, heal: float | None, strip:
     laid = [] if strip is None or drawing.grounds else [strip_below(Blocks.from_polygons(blocks), strip)]
     outlines = [*blocks, *drawing.grounds, *laid]
     if heal is not None:
-        outlines, note = healed(outlines, heal)
+        outlines, note = healed(outlines, heal, len(laid))
         notes = (*notes, note) if note else notes
     grounds = drawing.grounds if heal is None else outlines[count:]  # stones are healed onto the strip
     said = (missed_joints(outlines, heal or 0.0), _slivers(outlines))

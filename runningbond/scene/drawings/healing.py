@@ -44,7 +44,7 @@ class _Touches:
     high: Indices
 
 
-def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
+def heal(polygons: Sequence[Array], reach: float, laid: int = 0) -> tuple[list[Array], str]:
     """Close gaps and overlaps up to `reach` between neighbours.
 
     Two corners of different blocks that are each other's nearest are merged at their mean position. Corners near an
@@ -57,6 +57,8 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         Blocks and ground, counter-clockwise [m].
     reach
         Largest gap or overlap to be closed, and largest displacement of a corner [m].
+    laid
+        Number of the last outlines that nobody drew, such as a strip of ground: their sides do not limit the reach.
 
     Returns
     -------
@@ -71,7 +73,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         that corners would have to move further to close, and for a block that would cross itself.
     """
     blocks = Blocks.from_polygons(polygons)
-    sides = smaller_sides([shapely.Polygon(p) for p in polygons])
+    sides = smaller_sides([shapely.Polygon(p) for p in polygons[: len(polygons) - laid]])
     least = float(sides.min())
     if reach > least / 10:
         smallest = blocks.name(int(sides.argmin()))
