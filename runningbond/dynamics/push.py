@@ -277,7 +277,7 @@ class Push(Lead):
         most = power = speed * self._load
         drags = list[float]()
         for parts in _parts(peaks.windows):
-            before, full_way, taken, told = state.motion.copy(), 0.0, self._damped(state), state.time
+            before, full_way, taken = state.motion.copy(), 0.0, self._damped(state)
             for window, (part, length) in enumerate(zip(parts, lengths, strict=True), start=1):
                 since, damped = state.time, self._damped(state)
                 multiplier = run.drive(state, part * power, length, given=given)
@@ -288,7 +288,7 @@ class Push(Lead):
                     middle = state.copy()
             # The mean multiplier of a row belongs to the middle of the row.
             self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
-            drags.append((self._damped(state) - taken) / (float(np.mean(parts)) * power * (state.time - told)))
+            drags.append((self._damped(state) - taken) / (full_way * power / speed))
             seen.append((middle.motion, self.crushed(middle)))
             if len(traverse.rows) % STRIDE == 0:
                 self.observe(run, state, traverse.rows[-1].force)
