@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
-from .deformed_shape import Extent, farthest_motion
+from .deformed_shape import DeformedShape, Extent, farthest_motion
 from .joint_state import JointState
-from .mechanism import mechanism_shape, mechanism_warning
+from .mechanism import mechanism_warning
 from .quantities import signed
 from .style import AT_REST, CRUSHED, DARK, DRAWN, FASTEST, HELD, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
@@ -140,18 +140,21 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     return f"{name} = {signed(number(outcome.multiplier))}{unit}", bracket
 
 
-def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, drawn: bool) -> Caption:
-    """Caption with title, load, bracket, drawn size of the mechanism, and a warning if something is wrong with it."""
+def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], shape: DeformedShape | None) -> Caption:
+    """Caption with title, load, bracket, drawn size of the mechanism, and a warning if something is wrong with it.
+
+    `shape` is that of `mechanism_shape`, or None if the undeformed wall is drawn.
+    """
     title, load = wall_title(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
     warning = mechanism_warning(scene, outcome)
-    if not drawn:
+    if shape is None:
         return Caption(title, load, [warning or "no mechanism"], [])
     key = [*key, *held_key(scene)]
     what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
     if outcome.status == "infeasible":
         what = "under dead load; its fastest corner"
-    moves, shape = DRAWN * scene.size, mechanism_shape(scene, outcome) if outcome.moved is not None else None
-    if shape is not None:
+    moves = DRAWN * scene.size
+    if outcome.moved is not None:
         what, moves = "deformed shape; its farthest corner", shape.scale * farthest_motion(shape.displacement)
     size = f"{what} is drawn to move {moves:.2g} m"
     return Caption(title, load, [size, warning] if warning else [size], key)

@@ -149,7 +149,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=label))
     else:
         lines = lines[:0]
-    return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None), lines
+    return shape, mechanism_caption(scene, outcome, key, mechanism), lines
 
 
 def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:

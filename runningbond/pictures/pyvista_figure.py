@@ -38,9 +38,8 @@ def mechanism_figure(
     """Figure of an outcome's mechanism, or of the undeformed wall if there is none that the loads drive."""
     mechanism = mechanism_shape(scene, outcome)
     shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
-    caption = mechanism_caption(
-        scene, outcome, colour_key(shape.states, colouring, crushes=len(shape.crosses) > 0), drawn=mechanism is not None
-    )
+    key = colour_key(shape.states, colouring, crushes=len(shape.crosses) > 0)
+    caption = mechanism_caption(scene, outcome, key, mechanism)
     return _figure(shape, painter, caption, (shape,))
 
 

@@ -114,7 +114,7 @@ def test_live_load_is_not_drawn_for_fall_under_dead_load(load: dict[str, Any]) -
         shape = mechanism_shape(scene, outcome)
         assert shape is not None
         assert len(shape.scene.load.live) == drawn
-        said = mechanism_caption(scene, outcome, [], drawn=True).notes[0]
+        said = mechanism_caption(scene, outcome, [], shape).notes[0]
         assert said.startswith("under dead load; its fastest corner is drawn to move") == (status == "infeasible")
 
 
@@ -141,7 +141,7 @@ def test_blocks_that_turn_together_by_large_angles_stay_in_contact(changes: dict
     shape = mechanism_shape(scene, result.outcome)
     assert shape is not None
     drawn = float(np.hypot(*(shape.placed - shape.points).T).max())
-    assert f"is drawn to move {drawn:.2g} m" in mechanism_caption(scene, result.outcome, [], drawn=True).notes[0]
+    assert f"is drawn to move {drawn:.2g} m" in mechanism_caption(scene, result.outcome, [], shape).notes[0]
     edges = np.diff(shape.placed.reshape(-1, 4, 2), axis=1)
     assert np.hypot(*edges.T) == pytest.approx(np.hypot(*np.diff(shape.points.reshape(-1, 4, 2), axis=1).T), rel=1e-2)
     if scene.settlement is None:
