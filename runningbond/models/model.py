@@ -27,8 +27,7 @@ class Cost:
     weightless: float = 1.0  # factor for walls without weight
     finer: float = 0.0  # exponent of 1 / tolerance; 0 for a model without bisection
     start: float = 0.0  # seconds for a wall of any size, for example to load compiled kernels
-    cracked: float = 1.0  # factor for walls whose blocks may crack,
-    softened: float = 1.0  # for walls whose joints soften,
+    softened: float = 1.0  # factor for walls whose joints soften,
     crushed: float = 1.0  # for walls whose joints crush or close under pressure,
     soft: float = 1.0  # and for walls of soft blocks, for which further models run (`second_opinion`)
 

@@ -79,8 +79,6 @@ def estimate(
     seconds *= (FITTED_TOLERANCE / tolerance_of_draws(tolerance, draws)) ** law.finer
     if not any(scene.load.gravity):
         seconds *= law.weightless
-    if scene.inner_joint is not None:
-        seconds *= law.cracked
     seconds = _dearer(model, law, scene) * (draws * seconds + law.start)
     return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
 
