@@ -2,11 +2,11 @@
 
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
-from warnings import warn
 
 import numpy as np
 
 from .joints import listed_points, wall_points
+from .likely_slips import warn_of_likely_slips
 from .models import Model, check_parameters, find_model, run_model
 from .path_states import PathState, collected
 from .pictures.captions import to_png, to_svg
@@ -15,7 +15,7 @@ from .pictures.flat import draw_mechanism, figure_of
 from .results import Outcome, Status
 from .results.mechanism import rigid_jumps
 from .results.outcome import number
-from .scene import Array, SceneError, plausibility
+from .scene import Array, SceneError
 from .tables import Table, table
 from .wall import Wall
 
@@ -146,8 +146,7 @@ def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, par
     """Run a model on a wall, as documented in `Wall.run`."""
     model = find_model(model)
     check_parameters(model, parameters)  # some may have the names of parameters of `run_model`
-    for line in plausibility.warnings(wall.scene):
-        warn(line, stacklevel=3)
+    warn_of_likely_slips([wall.scene], stacklevel=4)
     recorder = model.observer(wall.scene, None) if states and model.observer else None
     outcome = run_model(model, wall.scene, tolerance, recorder, **parameters)
     if recorder is None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from .campaigns import ctrl_c_passed_on, run_campaign
 from .campaigns.fingerprint import fingerprint
+from .likely_slips import warn_of_likely_slips
 from .models import TOLERANCE, Model, find_model
 from .models.far import check_goes_far, going_far
 from .results import make_folder
@@ -96,6 +97,7 @@ def sweep(
     kept_in = None if folder is None else path_of("folder", folder)
     if kept_in is not None:
         make_folder(kept_in)
+    warn_of_likely_slips(scenes.values())
     with ctrl_c_passed_on():
         campaign = run_campaign(scenes, [model], folder=kept_in, tolerance=tolerance, jobs=jobs)
     answers = {cell: outcome.summary() for cell, outcome in campaign.outcomes.items()}

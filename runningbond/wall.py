@@ -5,12 +5,12 @@ from functools import cached_property
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
-from warnings import warn
 
 from numpy.typing import NDArray
 
 from .descriptions import as_in_a_file, keys_of_name, merge, merge_changes
-from .scene import Scene, SceneError, plausibility, read_description, scene_from_dict
+from .likely_slips import warn_of_likely_slips
+from .scene import Scene, SceneError, read_description, scene_from_dict
 from .scene.errors import abbreviated
 from .scene.ranges import path_of, suggestion
 
@@ -333,6 +333,7 @@ class Wall:
 
         chosen = going_far(find_model(model), displacements, distance)
         check_goes_far(chosen, self.scene, displacements, distance)
+        warn_of_likely_slips([self.scene])
         sampling = Sampling(self.scene, chosen, number, scatter)
         with ctrl_c_passed_on():
             return sampling.run(tolerance, None if folder is None else path_of("folder", folder), jobs)
@@ -353,6 +354,7 @@ class Wall:
         from .models import respond
         from .pictures.response import DrawnResponse
 
+        warn_of_likely_slips([self.scene])
         return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)), wall=self.scene)
 
     def advise(self, tolerance: float = 0.05, *, finite: bool = False) -> "Advice":
@@ -373,8 +375,7 @@ class Wall:
         """
         from .compare.advice import advise
 
-        for line in plausibility.warnings(self.scene):
-            warn(line, stacklevel=2)
+        warn_of_likely_slips([self.scene])
         return advise(self.scene, tolerance, finite=finite)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":

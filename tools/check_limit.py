@@ -43,6 +43,8 @@ def read(folder: Path) -> tuple[Any, dict[str, Any], dict[str, np.ndarray]]:
     if not (folder / "outcome.json").is_file():
         raise SystemExit(f"{folder}: holds no outcome.json of a limit analysis")
     record = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
+    if record["model"] not in ("limit", "limit-nonassociated"):
+        raise SystemExit(f"{folder}: holds an outcome of {record['model']}, and none of a limit analysis")
     with np.load(io.BytesIO((folder / record["arrays"]).read_bytes())) as stored:
         arrays = dict(stored)
 

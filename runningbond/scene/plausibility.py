@@ -14,6 +14,7 @@ import shapely
 
 from .arrays import Array, Mask
 from .blocks import touching_boxes
+from .history import STANDARD_GRAVITY
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness, table_of
 from .scene import Scene
 from .ties import ANCHOR
@@ -32,12 +33,17 @@ class Plausible:
         """Yield a warning for a number outside the range; 0 is not warned about, because it means none."""
         if value == 0 or self.least <= value <= self.most:
             return
-        middle = math.sqrt(self.least * self.most)
-        meant = {f"{value:g} {unit}": value * factor for unit, factor in self.others.items()}
-        likely = {text: one for text, one in meant.items() if self.least <= one <= self.most}
-        text = min(likely, key=lambda text: abs(math.log(likely[text] / middle)), default="")
-        hint = f"; is {text} meant, which is {likely[text]:.4g} {self.unit}?" if text else ""
+        unit, meant = self.likely(value, self.others)
+        hint = f"; is {value:g} {unit} meant, which is {meant:.4g} {self.unit}?" if unit else ""
         yield f"{key} = {value:g}: is not within {self.least:g} … {self.most:g} {self.unit}{hint}"
+
+    def likely(self, value: float, others: Mapping[str, float]) -> tuple[str, float]:
+        """The most likely of other units, by their factors, and what the number is in it; empty and 0 if none is."""
+        middle = math.sqrt(self.least * self.most)
+        meant = {unit: value * factor for unit, factor in others.items()}
+        likely = {unit: one for unit, one in meant.items() if self.least <= one <= self.most}
+        unit = min(likely, key=lambda unit: abs(math.log(likely[unit] / middle)), default="")
+        return unit, likely.get(unit, 0.0)
 
 
 PRESSURES = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
@@ -62,10 +68,20 @@ OF_TIES = Plausible(1e8, 1e12, "Pa", PRESSURES)
 AREA = Plausible(1e-8, 0.1, "m²", {"mm²": 1e-6, "cm²": 1e-4})
 UNREAL_YIELD_STRESS = 5e9
 """Stress [Pa] that no real tie reaches: if yield force / area is above it, a stress was probably given as `yield`."""
+LOW_YIELD_STRESS = 1e6
+"""Stress [Pa] at which no real tie yields: if yield force / area is below it, `yield` was probably given in kN."""
 
 SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
 GRAVITY = Plausible(9.3, 10.3, "m/s²")
-SHAKING = Plausible(0.01, 50.0, "m/s²", {"cm/s²": 1e-2})
+SHAKING = Plausible(0.01, 50.0, "m/s²")
+RECORDED_IN = {
+    "acceleration": {"cm/s²": 1e-2},
+    "g": {"cm/s²": 1e-2 / STANDARD_GRAVITY, "m/s²": 1 / STANDARD_GRAVITY},
+    "velocity": {"cm/s": 1e-2},
+    "displacement": {"mm": 1e-3, "cm": 1e-2},
+}
+"""Factors on the acceleration if the values of a record, by its quantity, are in another unit than was said."""
+
 SAMPLING = Plausible(1e-5, 0.5, "s", {"ms": 1e-3})
 FRICTION = (0.1, 1.5)
 ANGLES = (5.0, 60.0)
@@ -163,6 +179,8 @@ def _ties(scene: Scene) -> Iterator[str]:
         yield from AREA.doubts(f"tie[{k}].area", area)
         if most / area > UNREAL_YIELD_STRESS and AREA.least <= area <= AREA.most:
             yield f"tie[{k}].yield = {most:g}: is a force, {most / area:.3g} Pa on the tie's area; is a stress meant?"
+        elif 1e3 * most / area < UNREAL_YIELD_STRESS and most / area < LOW_YIELD_STRESS and area <= AREA.most:
+            yield f"tie[{k}].yield = {most:g}: is only {most / area:.3g} Pa on the tie's area; are {most:g} kN meant?"
     anchors = np.argwhere(ties.block == ANCHOR).tolist()
     wall = [shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)] if anchors else []
     for k, side in anchors:
@@ -189,7 +207,10 @@ def _beam(scene: Scene) -> Iterator[str]:
 def _shaking(scene: Scene) -> Iterator[str]:
     """Warn about an unusual peak ground acceleration, or time step of a record."""
     if scene.history is not None:
-        yield from SHAKING.doubts("load.history, peak acceleration", float(np.hypot(*scene.history.peak)))
+        peak = float(np.hypot(*scene.history.peak))
+        unit, meant = SHAKING.likely(peak, RECORDED_IN[scene.history.quantity])
+        hint = f"; are its values in {unit}, which makes it {meant:.4g} {SHAKING.unit}?" if unit else ""
+        yield from (line + hint for line in SHAKING.doubts("load.history, peak acceleration", peak))
         if scene.history.interval is None:
             yield from SAMPLING.doubts("load.history, time step", float(np.median(np.diff(scene.history.time))))
 

@@ -103,11 +103,13 @@ def suggestion(word: object, options: Sequence[str]) -> str:
 
 
 def nearest(word: object, options: Sequence[str]) -> str:
-    """The option that is most similar to a word; empty if none is similar enough."""
+    """The option of which a word is the first part, or else the most similar; empty if none is similar enough."""
     if not isinstance(word, str) or not options:
         return ""
 
     def likeness(option: str) -> float:
+        if option.casefold().startswith(f"{word.casefold()}-"):
+            return 1.0
         return difflib.SequenceMatcher(None, option.casefold(), word.casefold()).ratio()
 
     likely = max(options, key=likeness)  # the first of several that are equally similar

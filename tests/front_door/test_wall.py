@@ -217,7 +217,7 @@ def test_list_is_not_changed_by_number_and_by_name_at_once() -> None:
 
 def test_sweep_over_the_yield_force_of_a_tie() -> None:
     """A block pushed by 1 N at its top, with a tie at mid-height: λ balances the moments of weight and tie."""
-    block = rb.Wall.courses([[1]], block_width=0.4, block_height=1.0, thickness=1.0, density=1000.0, friction=5.0)
+    block = rb.Wall.courses([[1]], block_width=0.4, block_height=1.0, thickness=1.0, density=1000.0, friction=1.5)
     tie = {"from": [-1.0, 0.5], "to": [0.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 1.0}
     push = {"kind": "point", "at": [0.0, 1.0], "force": [1.0, 0.0]}
     wall = block.with_({"tie": [tie], "load.live": push})
@@ -288,11 +288,25 @@ def test_course_heights_replace_the_block_height() -> None:
         rb.Wall.running_bond(length=1.6, course_heights=heights, block_height=0.2, **size)
 
 
-def test_likely_input_errors_are_warned_about_at_the_calling_line() -> None:
-    """With the same text as on the command line, and with the caller's file."""
-    wall = rb.Wall.running_bond(**PANEL).with_({"block.density": 1.8})
+PULSE = {"pulse": {"kind": "half-sine", "amplitude": 0.3, "period": 0.2}, "quantity": "g"}
+
+
+@pytest.mark.parametrize(
+    "analyse",
+    [
+        lambda wall: wall.run("limit"),
+        lambda wall: rb.sweep(wall, {"joint.friction": [0.5, 0.6]}, "limit", jobs=1),
+        lambda wall: wall.draws("dem-static", 2, tolerance=0.1, jobs=1),
+        lambda wall: wall.with_({"load.live": None, "load.history": PULSE}).respond("dem-dynamic"),
+    ],
+    ids=["run", "sweep", "draws", "respond"],
+)
+def test_likely_input_errors_are_warned_about_at_the_calling_line(analyse: Any) -> None:
+    """With the same text as on the command line, once, and with the caller's file."""
+    stiff = {"joint.normal_stiffness": 1e9, "joint.shear_stiffness": 4e8}
+    wall = rb.Wall.running_bond(**PANEL).with_({"block.density": 1.8, **stiff})
     with pytest.warns(UserWarning, match=r"block.density = 1.8: is not within .* kg/m³") as told:
-        wall.run("limit")
+        analyse(wall)
     assert [Path(each.filename).name for each in told] == [Path(__file__).name]
 
 

@@ -89,6 +89,7 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (tie(210.0), "tie[0].young = 210: * is 210 GPa meant", tie(2.1e11)),
         (tie(2.1e11, area=314.0), "tie[0].area = 314: * is 314 mm² meant, which is 0.000314 m²?", tie(2.1e11)),
         (tie(2.1e11, most=2.35e8), "tie[0].yield = 2.35e+08: is a force * is a stress meant?", tie(2.1e11, most=3e5)),
+        (tie(2.1e11, most=30.0), "tie[0].yield = 30: is only * are 30 kN meant?", tie(2.1e11, most=3e4)),
         (tie(2.1e11, to=1.45), "tie[0].to = [1.45, 0.7]: is an anchor * 0.01 m beside the wall", tie(2.1e11, to=2.0)),
         (beam(250.0), "beam.height = 250: is more than the wall's size, 1.44 m; are mm meant?", beam(0.25)),
         (beam(0.2, 10.0), "beam.drive.displacement = 10: is more than", beam(0.2, 0.01)),
@@ -217,7 +218,7 @@ def test_remarks_are_notes_followed_by_warnings() -> None:
 @pytest.mark.parametrize(
     ("step", "peak", "says"),
     [
-        (0.01, 300.0, "load.history, peak acceleration = 300: * is 300 cm/s² meant, which is 3 m/s²?"),
+        (0.01, 300.0, "load.history, peak acceleration = 300: * are its values in cm/s², which makes it 3 m/s²?"),
         (0.01, 1e-3, "load.history, peak acceleration = 0.001: is not within 0.01 … 50 m/s²"),
         (10.0, 3.0, "load.history, time step = 10: * is 10 ms meant, which is 0.01 s?"),
         (0.01, 3.0, ""),
@@ -228,6 +229,26 @@ def test_records_in_a_wrong_unit_are_warned_about(step: float, peak: float, says
     found = warnings(replace(panel(), load=Load(live=(history,))))
     assert len(found) == bool(says)
     assert all(part in "".join(found) for part in says.split(" * "))
+
+
+@pytest.mark.parametrize(
+    ("quantity", "factor", "says"),
+    [
+        ("g", 100.0, "are its values in cm/s², which makes it 1 m/s²?"),
+        ("g", 6.0, "are its values in m/s², which makes it 6 m/s²?"),
+        ("velocity", 100.0, "are its values in cm/s, which makes it "),
+        ("displacement", 1e3, "are its values in mm, which makes it "),
+    ],
+)
+def test_hint_on_the_unit_of_a_record_follows_its_quantity(quantity: Any, factor: float, says: str) -> None:
+    """Displacements in mm were asked about as accelerations of thousands of cm/s²; the record itself is plausible."""
+    time = 0.05 * np.arange(41.0)
+    shape = np.column_stack([np.sin(2 * np.pi * time), np.zeros(41)])
+    amplitude = {"g": 1.0, "velocity": 0.2, "displacement": 0.05}[quantity]
+    plain, odd = (History(time, scale * amplitude * shape, quantity) for scale in (1.0, factor))
+    assert warnings(replace(panel(), load=Load(live=(plain,)))) == ()
+    (line,) = warnings(replace(panel(), load=Load(live=(odd,))))
+    assert says in line
 
 
 def test_show_prints_the_ground_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
