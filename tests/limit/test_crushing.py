@@ -54,6 +54,7 @@ MATERIALS = {
     "its cone a rest on the cap": JointMaterial(0.3, 0.31, 0.2, compressive_strength=1.0),
     "capped all round": JointMaterial(0.6, 0.6, 0.2, compressive_strength=1.0),
     "stronger in tension": JointMaterial(0.5, 2.0, 2.0, compressive_strength=1.0),
+    "its cone met by the cap in tension": JointMaterial(0.6, 0.4, 0.2, compressive_strength=1.0),
 }
 EACH_MATERIAL = pytest.mark.parametrize("name", MATERIALS)
 

@@ -20,16 +20,13 @@ def pier(young: float, **changes: Any) -> Scene:
     """A pier of one block per course, with an unbonded bar on its axis from the rock below to its top."""
     middle, head = WIDTH / 2, HEIGHT - HEIGHT / COURSES / 2
     tie = {"from": [middle, head - LENGTH], "to": [middle, head], "area": BAR, "young": young}
-    return courses(
-        [[1]] * COURSES,
-        width=WIDTH,
-        height=HEIGHT / COURSES,
-        wall__thickness=THICKNESS,
-        block__young=1e11,
-        joint={"friction": 0.8, "normal_stiffness": 1e10, "shear_stiffness": 4e9},
-        tie=[tie | {"yield": YIELD, "preload": PRELOAD}],
-        **changes,
-    )
+    wall: dict[str, Any] = {
+        "wall__thickness": THICKNESS,
+        "block__young": 1e11,
+        "joint": {"friction": 0.8, "normal_stiffness": 1e10, "shear_stiffness": 4e9},
+        "tie": [tie | {"yield": YIELD, "preload": PRELOAD}],
+    }
+    return courses([[1]] * COURSES, width=WIDTH, height=HEIGHT / COURSES, **wall | changes)
 
 
 @pytest.mark.parametrize("young", [2.1e11, 5e10])
@@ -39,6 +36,22 @@ def test_hanging_displacement_of_pier(young: float) -> None:
     exact = slack / (WIDTH / 2) * np.hypot(WIDTH, HEIGHT)
     assert hanging_displacement(pier(young)) == pytest.approx(exact, rel=1e-6)
     assert hanging_displacement(courses([[1]])) == 0.0
+
+
+def test_hanging_displacement_weights_ties_by_their_work() -> None:
+    """Each tie that lengthens counts by its yield force times its lever arm; one that goes slack does not count."""
+    young, head = 2.1e11, HEIGHT - HEIGHT / COURSES / 2
+    upright = [(0.2 * WIDTH, 4.0, 9e4, 2e4), (0.7 * WIDTH, 3.5, 3e4, 1e4)]  # place, length, yield force and preload
+    steel = {"area": BAR, "young": young}
+    ties = [
+        {"from": [x, head - length], "to": [x, head], "yield": most, "preload": preload} | steel
+        for x, length, most, preload in upright
+    ]
+    slack = {"from": [0.5 * WIDTH, head], "to": [5.0, head], "yield": 1e4} | steel
+    spent = sum(most * (most - preload) * length / (young * BAR) for _, length, most, preload in upright)
+    turned = spent / sum(most * (WIDTH - x) for x, _, most, _ in upright)
+    scene = pier(young, tie=[*ties, slack])
+    assert hanging_displacement(scene) == pytest.approx(turned * np.hypot(WIDTH, HEIGHT), rel=1e-6)
 
 
 @pytest.mark.parametrize(

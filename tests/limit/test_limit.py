@@ -13,7 +13,15 @@ from hypothesis import strategies as st
 from scipy.optimize import approx_fprime, linprog
 
 from runningbond.joints import joint_points
-from runningbond.limit import equilibrium, is_self_locking, limit, limit_nonassociated, limit_state, proved_bound
+from runningbond.limit import (
+    bears_dead_load,
+    equilibrium,
+    is_self_locking,
+    limit,
+    limit_nonassociated,
+    limit_state,
+    proved_bound,
+)
 from runningbond.limit.associated import STRENGTH_CAP
 from runningbond.limit.certificates import Certificate, certified_loads
 from runningbond.limit.force_program import ForceSolution
@@ -460,6 +468,13 @@ def test_message_states_share_of_weight_that_weak_joints_carry(
     assert limit(wall(1.01 * share * gravity)).status == "infeasible"
 
 
+def test_message_states_no_share_if_none_of_the_weight_is_balanced() -> None:
+    """A dry corbel whose upper block overhangs by more than half."""
+    outcome = limit(pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.6))
+    assert outcome.status == "infeasible"
+    assert "they balance" not in outcome.message
+
+
 @pytest.mark.parametrize("model", [limit, limit_nonassociated])
 def test_wall_held_up_by_live_load_is_infeasible(model: Callable[[Scene], object]) -> None:
     """A block that overhangs to the left by more than half would be balanced by a push to the right."""
@@ -599,6 +614,16 @@ def test_frictionless_wall_carries_no_lateral_load() -> None:
     assert math.copysign(1.0, zero) == 1.0
 
 
+@pytest.mark.parametrize(
+    ("friction", "force", "bears"), [(0.5, (1.0, 0.0), True), (0.0, (1.0, 0.0), False), (0.0, (0.0, -1.0), True)]
+)
+def test_dead_load_is_borne_together_with_some_live_load(
+    friction: float, force: tuple[float, float], bears: bool
+) -> None:
+    """A block without friction bears its weight, but no push; pressed straight down it locks."""
+    assert bears_dead_load(pile([rectangle(0, 0, 1, 1)], friction, PointLoad((0.5, 1.0), force))) == bears
+
+
 def test_disjoint_load_intervals_are_listed() -> None:
     """Mechanisms certified at loads far from each other prove nothing in between."""
     size = {"wall__block_width": 0.06, "wall__block_height": 0.24, "wall__height": 1.44}
@@ -608,6 +633,13 @@ def test_disjoint_load_intervals_are_listed() -> None:
         assert "every load of the interval" in outcome.message
     merged = certified_loads([_certificate(3, 4), _certificate(1, 2), _certificate(1.5, 2.5)], lambda x: 10 * x)
     assert merged == [(10, 25), (30, 40)]
+
+
+def test_certified_loads_are_ascending_and_include_intervals_within_others() -> None:
+    inside = [_certificate(1, 10), _certificate(2, 3), _certificate(9, 11), _certificate(12, 12)]
+    assert certified_loads(inside, lambda x: x) == [(1, 11), (12, 12)]
+    support = [_certificate(-0.5, -0.3), _certificate(-0.4, -0.1)]  # the share on a support falls as the load grows
+    assert certified_loads(support, lambda x: -x, falling=True) == [(0.1, 0.5)]
 
 
 def _certificate(least: float, most: float) -> Certificate:

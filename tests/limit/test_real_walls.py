@@ -1,13 +1,17 @@
 """Limit analysis with ties, a beam on top and moving supports, against solutions by hand."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from runningbond.limit import equilibrium, limit, limit_nonassociated, limit_state
+from runningbond.limit.descent import jump_pattern
+from runningbond.limit.force_program import coulomb, solve_forces
 from runningbond.limit.kinematics import dead_load
+from runningbond.limit.programs import Programs
 from runningbond.limit.settlement import largest_displacement
 from runningbond.models import run_model
 from runningbond.results import Outcome, load_outcome, save_outcome
@@ -124,6 +128,29 @@ def _ties(pull: float) -> list[dict[str, Any]]:
     return [{"from": [0.05, 1.41], "to": [-1.0, 0.2]} | size, {"from": [0.05, 1.29], "to": [1.4, 1.35]} | size]
 
 
+@pytest.mark.parametrize(("start", "sense"), [((-1.0, HEIGHT / 2), 1.0), ((2.0, HEIGHT / 2), -1.0)])
+def test_forces_drive_mechanisms_in_which_ties_yield_or_go_slack(start: tuple[float, float], sense: float) -> None:
+    """A block slides to the right: a bar on its left lengthens at its yield force, and one on its right goes slack."""
+    tie = Tie(start, (WIDTH / 2, HEIGHT / 2), area=1e-4, young=2e11, yield_force=0.1 * WEIGHT)
+    system = equilibrium(built([rectangle(0, 0, WIDTH, HEIGHT)], 0.1, ties=(tie,)))
+    forces = solve_forces(system, coulomb(system.strength))
+    assert forces.tie == pytest.approx(system.tie_yield if sense > 0 else 0.0, abs=1e-9)
+    motion = Programs(system).mechanism(forces, np.ones(2 * len(system.points)))
+    assert motion is not None
+    assert system.live @ motion == pytest.approx(1.0)
+    assert sense * system.elongation(motion)[0] > 1e-6
+
+
+def test_mechanisms_that_differ_only_in_their_ties_have_different_patterns() -> None:
+    """A block that lifts and slides: its bed opens and slips alike, while a tie at 45° lengthens or shortens."""
+    middle = (WIDTH / 2, HEIGHT / 2)
+    tie = Tie(middle, (middle[0] - 2, middle[1] + 2), 1e-4, 2e11, 100.0)
+    system = equilibrium(built([rectangle(0, 0, WIDTH, HEIGHT)], 0.1, ties=[tie]))
+    away, towards = np.array([2.0, 1.0, 0.0]) / system.scale, np.array([1.0, 2.0, 0.0]) / system.scale
+    assert system.elongation(away)[0] > 0 > system.elongation(towards)[0]
+    assert jump_pattern(system, away) != jump_pattern(system, towards)
+
+
 # --- the beam ---------------------------------------------------------------------------------------------------
 
 
@@ -166,6 +193,12 @@ def test_beam_at_fixed_height_locks_wall() -> None:
         outcome = run_model("limit", under_beam("fixed-height", friction))
         assert outcome.status == "unbounded"
         assert "whatever vertical force" in outcome.message
+
+
+@BOTH
+def test_beam_lifted_by_its_dead_load_is_infeasible(model: str) -> None:
+    """The beam is held at its height only once its dead load is on: until then nothing keeps it down."""
+    assert run_model(model, under_beam("fixed-height", force=[0, 0.5 * WEIGHT])).status == "infeasible"
 
 
 def test_wall_slides_without_dilatancy_under_beam_at_fixed_height() -> None:
@@ -388,6 +421,22 @@ def test_wall_that_bridges_by_friction_is_told_from_one_that_needs_none(model: s
 
 
 @BOTH
+def test_wall_that_bridges_by_glue_needs_more_than_normal_forces(model: str) -> None:
+    """A block glued between two walls hangs by shear when the ground under its dry bed sinks."""
+    grounds = (rectangle(-1, -1, WIDTH + 2, 1), rectangle(-1, 0.1, 1, 2), rectangle(WIDTH, 0.1, 1, 2))
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((-1.0, -1), (2, 0.05)), by=(0.0, -0.02), grounds=grounds)
+    glued, dry = replace(scene.joint, cohesion=1e5, tensile_strength=1e4), replace(scene.joint, name="dry")
+    moving = np.asarray(scene.support_motion.any(axis=1))
+    bed = np.asarray(moving[scene.joints.block].any(axis=1))
+    assert bed.sum() == 1
+    scene = replace(scene, joint_materials=(glued, dry), material_of_joint=bed.astype(np.int64))
+    outcome = run_model(model, scene)
+    assert outcome.status == "unbounded"
+    assert "bridges the support" in outcome.message
+    assert "by normal forces alone" not in outcome.message
+
+
+@BOTH
 @pytest.mark.parametrize("share", [1e-5, 1e-3])
 def test_support_that_bears_little_is_not_bridged(model: str, share: float) -> None:
     """The ground sinks from c = (1/2 − λ) b / (1 − λ) on, a little short of the middle of the block."""
@@ -440,6 +489,16 @@ def test_lifted_ground_has_to_be_driven(model: str) -> None:
     # The reaction acts at c = 0.4, the lifted point nearest to the hinge at 0: R c = W b / 2.
     assert outcome.multiplier == pytest.approx(-WIDTH / 2 / 0.4, rel=1e-6)
     assert "has to be driven" in outcome.message
+
+
+@BOTH
+def test_support_has_to_be_torn_off_its_glue(model: str) -> None:
+    """The block stands without the sinking ground [c, b], which is glued to it: λ W = −f_t (b − c) t."""
+    cut, tension = 0.8 * WIDTH, 100.0
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), by=(0.0, -0.02))
+    scene = scene.with_joint(cohesion=1000.0, tensile_strength=tension)
+    assert collapse(model, scene) == pytest.approx(-tension * (WIDTH - cut) * THICKNESS / WEIGHT, rel=1e-6)
+    assert "has to be driven" in run_model(model, scene).message
 
 
 @BOTH

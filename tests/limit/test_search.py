@@ -24,6 +24,7 @@ from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 from tests.checker import check
+from tests.limit.test_limit import pile, rectangle
 from tests.walls import panel
 
 SIZE, CELLS = 2.0, 5
@@ -206,6 +207,15 @@ def test_both_loads_of_certificate_drive_its_mechanism(name: str) -> None:
             assert abs(forces.tangential - at_limit)[slides].max(initial=0.0) < 1e-6 * scale
 
 
+def test_mix_of_mechanisms_may_close_joints_by_as_much_as_counts_as_still() -> None:
+    """A block that slides and sinks by a little: interpenetration as a mechanism, an inaccuracy as a rough mix."""
+    system = equilibrium(pile([rectangle(0, 0, 0.5, 1.2)], 0.1))
+    sinks = np.array([1.0, -5e-5, 0.0]) / system.scale
+    assert driving_forces(system, sinks) is None
+    assert driving_forces(system, sinks, still=1e-4) is not None
+    assert driving_forces(system, sinks, still=1e-5) is None
+
+
 def test_descent_finds_smaller_load_than_sequence() -> None:
     """W3 without inset: 0.35582 from the first start's 0.36031; the message counts starts and programs."""
     outcome = limit_nonassociated(published_scene("wall-w3"), starts=1)
@@ -237,6 +247,25 @@ def test_interrupt_keeps_certificates_or_associated_bound(workers: int, monkeypa
     assert (outcome.status, outcome.lower) == ("undecided", None)
     assert outcome.upper == pytest.approx(limit(rubble(3)).upper, rel=1e-9)
     assert "interrupted; upper is the associated bound" in outcome.message
+
+
+def test_interrupted_search_does_not_say_that_wall_locks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Friction grew with the load in all programs so far, but others were still to come."""
+    live = {"kind": "point", "at": [0.12, 0.12], "force": [0, -1]}
+    size = {"wall__length": 0.48, "wall__height": 0.12, "wall__first_course": "half"}
+    scene = panel(**size, support__kind="pinned-corners", load={"gravity": 9.81, "live": live})
+    assert limit_nonassociated(scene, starts=5).status == "unbounded"
+
+    def interrupted(*arguments: object) -> None:
+        raise KeyboardInterrupt
+
+    def observe(found: SearchLog) -> None:
+        assert found.growing
+        monkeypatch.setattr(Programs, "frozen", interrupted)
+
+    outcome = limit_nonassociated(scene, starts=5, observe=observe)
+    assert outcome.status == "undecided"
+    assert "interrupted; forces within Coulomb's law balance any multiple of the live load" in outcome.message
 
 
 def test_result_is_independent_of_number_of_workers() -> None:

@@ -4,11 +4,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 import runningbond as rb
 from dem.stiffness_update import resultant_wall
 from runningbond.compare import published_scene
 from runningbond.limit import elastic_displacement
+from runningbond.limit.elastic import held_motion
 from runningbond.models import MODELS, find_model, run_model
 from runningbond.models.far import going_far
 from runningbond.models.notes import keeps_strength
@@ -92,6 +94,14 @@ def test_elastic_displacement_agrees_with_resultant_joints(name: str) -> None:
     assert motion is not None
     farthest = np.abs(motion.reshape(-1, 3)[:, :2]).max()
     assert elastic_displacement(scene, 0.3) == pytest.approx(farthest, rel=1e-9)
+
+
+def test_motion_on_soft_springs_is_exact_and_on_vanishing_ones_loose() -> None:
+    """Force over stiffness at a thousandth of the stiffest spring; a block on a trillionth of it counts as loose."""
+    load, no_pins = np.array([0.0, 1.0]), csr_array((0, 2))
+    motion = held_motion(csr_array(np.diag([1.0, 1e-3])), no_pins, load, stiffest=1.0)
+    assert motion == pytest.approx(np.array([0.0, 1e3]))
+    assert held_motion(csr_array(np.diag([1.0, 1e-12])), no_pins, load, stiffest=1.0) is None
 
 
 @pytest.mark.parametrize("stiffness", [1e9, *at_length(1e10, 1e12)])
