@@ -538,6 +538,15 @@ def test_recorded_states_are_those_of_lowest_path(monkeypatch: pytest.MonkeyPatc
     assert len(recorder.frames) == len(paths[-1].rests) + len(paths[-1].past)
 
 
+def test_peak_of_curve_is_no_larger_than_load_of_fall() -> None:
+    """A larger load at a prescribed displacement is no lower end: the wall has fallen under a smaller one."""
+    system, none = static_system(pile([rectangle(0, 0, 0.5, 2)], 0.6)), np.zeros(0)
+    loads = np.append(np.zeros(system.unknowns - 1), 1.0)
+    rests, past = ([StaticState(m * loads, none, none, 0.0, none) for m in part] for part in ((0.0, 0.1), (0.3, 0.2)))
+    path = LoadPath(system, far=1e3, budget=0, rests=rests, past=past, upper=0.25)
+    assert ends(path) == (0.2, 0.25)
+
+
 def climbs(monkeypatch: pytest.MonkeyPatch) -> list[LoadPath]:
     """Loading paths of a wall, collected as they are computed."""
     paths: list[LoadPath] = []

@@ -13,9 +13,10 @@ from dem.finite_system import finite_system
 from fem_interface.finite_system import finite_system as deformable_system
 from fem_interface.model import fem
 from fem_interface.node_outline import node_outline
-from runningbond.dynamics import BlockSystem
+from runningbond.dynamics import BlockSystem, State
+from runningbond.dynamics.contact_update import MOST_STEPS, ContactUpdate, contacts_of
 from runningbond.dynamics.ties import TieRows, pull
-from runningbond.dynamics.turning_loads import turn_live, turn_loads
+from runningbond.dynamics.turning_loads import turn_live, turn_loads, work_of_turned
 from runningbond.scene import Array, Scene
 from tests.dynamics.test_led import block
 
@@ -80,6 +81,18 @@ def test_generalized_dead_forces_are_gradient_of_their_work(blocks: Blocks, seed
         return float((turning.force * turning.points.places(place)).sum() - weight * height)
 
     is_gradient(force, work, motion, np.isfinite(system.mass))
+
+
+@pytest.mark.parametrize("blocks", [rigid, deformable])
+def test_work_of_turned_dead_forces_is_that_of_their_change(blocks: Blocks) -> None:
+    """W = Δt v · (f − f₀), for rotations and deformations alike."""
+    system = blocks(block(load__dead=[{"kind": "point", "at": [0.05, 0.06], "force": [300.0, -400.0]}]))
+    turning, change = system.turning_dead, np.zeros(len(system.mass))
+    assert turning is not None
+    arrays = (turning.points.arrays, *turning[1:])
+    turn_loads(arrays, turned(system, 0), change)
+    velocity = turned(system, 1)
+    assert work_of_turned(arrays, velocity, 1e-3) == pytest.approx(1e-3 * float(change @ velocity))
 
 
 @pytest.mark.parametrize("blocks", [rigid, deformable])
@@ -160,6 +173,19 @@ def test_tie_acceleration_bound_holds_for_block_corners(seed: int) -> None:
         fastest = math.hypot(drawn[0], drawn[1]) + abs(drawn[2]) * reach
         allowed = float(most @ system.ties.force(motion, stretch))
         assert least * allowed <= fastest <= allowed
+
+
+def test_contacts_are_searched_before_taut_ties_draw_blocks_beyond_the_margin() -> None:
+    """From rest, without loads: ½ a t² with the acceleration by the ties is at most half the margin."""
+    system = finite_system(block(tie=TIES))
+    assert system.contacts is not None
+    state, dt = State.at_rest(system), 1e-4
+    state.stretch -= 1e-3
+    reach = system.contacts.outline.reach
+    drawn = float(system.ties.accelerations(system.mass, reach) @ system.ties.force(state.motion, state.stretch))
+    steps = ContactUpdate(system, system.contacts).steps_until_next_look(state, dt, 0.0)
+    assert steps < MOST_STEPS
+    assert drawn * (steps * dt) ** 2 / 2 <= contacts_of(state).margin / 2
 
 
 @pytest.mark.parametrize("blocks", [rigid, deformable])

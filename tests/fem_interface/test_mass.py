@@ -22,11 +22,12 @@ from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.growth import ramp
 from runningbond.dynamics.vibrations import elastic_stiffness
+from runningbond.joints import lobatto
 from runningbond.joints.law import FRICTION_WORK
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Array, Closure, Scene, SceneError, Stiffness
 from tests.at_length import at_length
 from tests.limit.test_limit import rectangle
-from tests.walls import panel
+from tests.walls import courses, panel
 
 from .nodal_steps import NodalSteps
 from .walls import GLUE, MORTAR, joint_stiffness_of, patch, pushed, replace_blocks, triangle_wall, wall
@@ -117,6 +118,14 @@ def test_mass_scaling_keeps_the_first_twenty_frequencies_of_small_walls(
     assert _largest_slowing(scene) < MAX_FREQUENCY_LOSS
 
 
+@pytest.mark.parametrize("pattern", [[[1]], [[1], [1]], [[1, 1], [0.5, 1, 0.5]]])
+def test_mass_scaling_lengthens_steps_of_fewer_than_ten_stiff_blocks(pattern: list[list[float]]) -> None:
+    """More than six times: only two thirds of their few rigid-body frequencies have to be preserved."""
+    found = modal_wall(courses(pattern, joint__mortar=MORTAR, block__young=1e12))
+    scaled, plain = (scaled_modes(found, 0.05, mass_scaling=scaling) for scaling in (True, False))
+    assert math.sqrt(plain.frequency_squared / scaled.frequency_squared) > 6
+
+
 @pytest.mark.parametrize("young", [1e11, *at_length(1e10, 1e12)])
 def test_mass_scaling_of_large_walls_is_safe_without_check(monkeypatch: pytest.MonkeyPatch, young: float) -> None:
     """Panel-07, with 588 blocks: a quarter of the largest decrease that mass scaling may cause."""
@@ -153,6 +162,14 @@ def test_modal_stiffness_is_that_of_time_steps(make: Any, cracks: Cracks) -> Non
     found = modal_wall(scene, cracks=cracks)
     of_steps, _ = elastic_stiffness(system_of(found))
     assert np.abs(modal_stiffness(found).toarray() - of_steps).max() < 1e-12 * np.abs(of_steps).max()
+
+
+def test_modal_stiffness_of_closed_joints_is_their_largest() -> None:
+    closing = wall().with_joint(closure=Closure(growth=1e5, stiffest=1e12), elasticity=Stiffness(1e10, 4e9))
+    stiffest = wall().with_joint(elasticity=Stiffness(1e12, 4e9))
+    closed = modal_stiffness(modal_wall(closing, rule=lobatto()), closed=True)
+    exact = modal_stiffness(modal_wall(stiffest, rule=lobatto()))
+    assert np.abs((closed - exact).toarray()).max() <= 1e-12 * np.abs(exact.toarray()).max()
 
 
 def _largest_slowing(scene: Scene, modes: ModeCount | None = None) -> float:

@@ -175,6 +175,17 @@ def test_heavier_pieces_keep_curve_of_cracking_wall(monkeypatch: pytest.MonkeyPa
     assert most < 0.8 * whole.curve[:, 1].max()
 
 
+def test_pieces_of_pinned_blocks_keep_their_inertia() -> None:
+    """Held at a corner, a block has no rigid motion against which its pieces could be heavier."""
+    found, plain, system = heavier(pressed(support__kind="pinned-corners"))
+    pinned = found.rigid[found.scene.pins.block]
+    assert pinned.size
+    assert system.clusters.number
+    assert not np.isin(system.clusters.freedom, pinned).any()
+    assert np.isfinite(system.clusters.part).all()
+    assert np.array_equal(system.mass[pinned], plain.mass[pinned])
+
+
 def test_undriven_walls_have_no_heavier_pieces() -> None:
     """They collapse freely, in physical time."""
     scene = pressed(beam={"height": 0.1, "drive": {"force": [1, 0]}})

@@ -232,3 +232,13 @@ def test_plastic_joint_in_softening_kernel_keeps_tensile_strength() -> None:
     for slid in (0.0, 1e-3):
         normal, _, _ = follow(kernel_law(mixed, np.zeros(1, dtype=np.int64)), opening, np.full(4, slid))
         assert normal == pytest.approx(JOINT.tensile_strength, rel=1e-6)
+
+
+def test_tension_cut_off_stores_the_work_of_its_traction() -> None:
+    """Without fracture energies: f_t² / 2 k_n where it is reached, and f_t times the opening beyond."""
+    found, strength = law(energy_1=None, energy_2=None), JOINT.tension
+    reached = strength / 1e11
+    opening = reached * np.array([0.5, 1.0, 3.0])
+    normal, tangential, _ = follow(found, opening, np.zeros(3))
+    stored = found.law.stored(found, opening, normal, tangential)
+    assert stored == pytest.approx(strength * reached * np.array([0.125, 0.5, 2.5]))
