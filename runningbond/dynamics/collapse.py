@@ -26,6 +26,13 @@ Contacts that slip without end may vibrate for that long, and local damping slow
 Walls that move steadily are left alone: combined damping dissipates more of a fall that vibrates.
 """
 
+SHORTEST_FALL = 10_000
+"""Steps before which no motion is a collapse, unless it passes the last mark of `CollapseDetector`.
+
+Where joints yield one after another a wall may move as far as others fall, within some 600 to 4000 steps, and then rest
+because joints yield that had hardly moved before. Under loads just too large, walls fall for 5000 to 100 000 steps.
+"""
+
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
 """Response of a wall to a load."""
 
@@ -77,8 +84,8 @@ def hold_load(
     Unstable
         If more energy is spent than the load and the initial state can have supplied.
     """
-    start, given = state.motion.copy(), run.given(state)
-    detector = CollapseDetector(elastic=sudden or run.system.weightless)
+    start, begun, given = state.motion.copy(), state.steps, run.given(state)
+    detector = CollapseDetector(elastic=sudden or run.system.weightless, shortest=SHORTEST_FALL)
     halfway = start
     calm, late, drags_less = 0, criteria.dragged / criteria.interval, False
     for look in range(criteria.budget // criteria.interval):
@@ -90,7 +97,7 @@ def hold_load(
         if calm == CALM:
             return "stable", None
         marks = detector.marks
-        if detector.goes_on(run.system.farthest(state.motion - start, criteria.collapse), state.steps):
+        if detector.goes_on(run.system.farthest(state.motion - start, criteria.collapse), state.steps - begun):
             return "collapse", halfway
         if detector.marks > marks:
             halfway = state.motion.copy()
@@ -108,6 +115,8 @@ class CollapseDetector:
     elastic
         Whether elastic deformation may reach a good part of the unit, so that the wall must move the whole unit: under
         a suddenly applied load, or without weight, where only the load presses the joints together.
+    shortest
+        Steps before which no motion is a collapse unless it passes the last mark.
     """
 
     FARTHEST = 4
@@ -123,7 +132,8 @@ class CollapseDetector:
     unit.
     """
 
-    def __init__(self, *, elastic: bool = False) -> None:
+    def __init__(self, *, elastic: bool = False, shortest: int = 0) -> None:
+        self.shortest = shortest
         # The fourth mark is EARLY (steady for the second time); if elastic, the third is the unit.
         first = -2 if elastic else int(math.log2(self.EARLY)) - 3
         self._marks = [2.0**k for k in range(first, self.FARTHEST + 1)]
@@ -141,7 +151,7 @@ class CollapseDetector:
         return self._steady > 0
 
     def goes_on(self, moved: float, steps: int) -> bool:
-        """Whether a wall that has moved this far after this many steps has collapsed."""
+        """Whether a wall that has moved this far after this many steps under the load has collapsed."""
         while self.marks < len(self._marks) and moved > (mark := self._marks[self.marks]):
             self._passed.append(steps)
             if len(self._passed) >= 3:
@@ -150,7 +160,8 @@ class CollapseDetector:
                 # passed within one check contain no information on the speed.
                 steady = 0 < third - second <= 2 * self.SLACK * (second - first)
                 self._steady = self._steady + 1 if steady else 0
-            if self._steady >= (1 if mark >= 1 else 2) or self.marks == len(self._marks):
+            falls = self._steady >= (1 if mark >= 1 else 2) and steps >= self.shortest
+            if falls or self.marks == len(self._marks):
                 return True
         return False
 

@@ -288,7 +288,7 @@ def moving_far(
         How blocks deform at a point.
     """
     centroid = scene.blocks.centroid
-    still = int(system.rigid[(scene.fixed & ~scene.support_motion.any(axis=1)).argmax(), 2])
+    still = int(system.rigid[(scene.fixed & (scene.support_motion[:, 2] == 0)).argmax(), 2])
 
     def points(block: Indices, at: Array) -> BodyPoints:
         return body_points(block, at, centroid, system.rigid, still, deformation)

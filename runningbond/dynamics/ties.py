@@ -93,7 +93,6 @@ class TieRows(NamedTuple):
         if len(self.length):
             tension = np.minimum(self.constants[:, YIELD], STRAINED * stiffness * self.length)
             self._reaches(rows, tension / stiffness)
-            stiffness = np.maximum(stiffness, tension / self.length)
         else:
             for row, entries in zip(rows, self._entries(), strict=True):
                 row[self.freedom[entries]] = self.share[entries]

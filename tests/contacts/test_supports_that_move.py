@@ -250,6 +250,24 @@ def test_anchors_stay_fixed_while_supports_move(model: Any, order: int) -> None:
     assert outcome.path[-1, outcome.path_columns.index("tie 0 [N]")] == pytest.approx(stiffness * stretched, rel=0.02)
 
 
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_anchor_stays_fixed_while_all_ground_sinks(model: Any) -> None:
+    """The tie above a block stretches by the settlement, and the block does not turn."""
+    scene = build_scene(
+        "anchor",
+        [rectangle(-0.25, 0.0, 0.5, 0.3)],
+        thickness=0.2,
+        block=BlockMaterial(2000.0, young=1e12, poisson=0.2),
+        joint=JointMaterial(0.8, elasticity=Stiffness(1e10, 1e10), inset=0.002),
+        grounds=[rectangle(-0.5, -0.3, 1.0, 0.3)],
+        load=Load(live=(Settlement(box=((-0.6, -1.0), (0.6, 0.1)), by=(0.0, -0.4)),)),
+        ties=[Tie((0.0, 0.2), (0.0, 2.2), area=1e-6, young=1e9, yield_force=300.0)],
+    )
+    outcome = model(scene, 0.01, displacements="finite")
+    pull = outcome.path[-1, outcome.path_columns.index("tie 0 [N]")]
+    assert pull == pytest.approx(0.4 * 1e9 * 1e-6 / 2.0, rel=1e-3)
+
+
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 def test_large_support_motion_is_reported_as_beyond_small_displacements(model: str) -> None:
     """50 mm of an arch of 0.4 m are, 5 mm are not; a model with finite displacements says how to use them."""

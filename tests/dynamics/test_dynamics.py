@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
+from runningbond import Wall
 from runningbond.draws import Scatter
 from runningbond.dynamics import (
     BlockSystem,
@@ -448,6 +449,53 @@ def test_first_check_alone_does_not_detect_collapse() -> None:
     """A wall that gives way by less than the farthest threshold before the first check is not in collapse."""
     assert not CollapseDetector().goes_on(15.9, 200)
     assert CollapseDetector().goes_on(16.1, 200)
+
+
+def test_short_motion_is_no_collapse_before_its_last_mark() -> None:
+    """At constant speed: one unit in 500 steps, and the first mark beyond 3000 steps is that at 8 units."""
+    fall = CollapseDetector(shortest=3000)
+    assert next(t for t in range(1, 10_000) if fall.goes_on(t / 500, t)) == pytest.approx(4000, abs=1)
+
+
+STONES: dict[str, list[list[tuple[float, float]]]] = {
+    "wedge": [
+        [(0.22, 0.0), (0.98, 0.0), (0.83, 0.48)],
+        [(0.98, 0.0), (1.0, 0.0), (1.0, 0.66), (0.83, 0.48)],
+        [(0.0, 0.0), (0.22, 0.0), (0.83, 0.48), (1.0, 0.66), (1.0, 0.8), (0.0, 0.8)],
+    ],
+    "slope": [
+        [(0.63, 0.44), (1.0, 0.48), (1.0, 0.8), (0.69, 0.8)],
+        [(0.01, 0.0), (1.0, 0.0), (1.0, 0.48), (0.63, 0.44)],
+        [(0.0, 0.0), (0.01, 0.0), (0.63, 0.44), (0.69, 0.8), (0.0, 0.8)],
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("stones", "cohesion", "at", "force"),
+    [("wedge", 18500.0, [0.0, 0.8], [99.0, 86.0]), ("slope", 16500.0, [1.0, 0.8], [0.0, 24.0])],
+)
+def test_wall_that_yields_far_before_it_rests_has_not_collapsed(
+    stones: str, cohesion: float, at: list[float], force: list[float]
+) -> None:
+    """Glued stones without friction have one collapse load; some move as far as others fall and then rest."""
+    wall = Wall.outlines(
+        STONES[stones],
+        thickness=0.2,
+        density=2000.0,
+        friction=0.0,
+        cohesion=cohesion,
+        tensile_strength=2100.0,
+        normal_stiffness=1e9,
+        shear_stiffness=4e8,
+        live={"kind": "point", "at": at, "force": force},
+    )
+    exact, outcome = wall.run("limit").multiplier, wall.run("dem-dynamic", tolerance=0.02)
+    assert exact is not None
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < 1.001 * exact
+    assert outcome.upper > 0.999 * exact
 
 
 def test_interrupt_keeps_bracket_and_curve_found_so_far() -> None:
