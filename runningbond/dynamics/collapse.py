@@ -49,6 +49,7 @@ class Criteria:
     interval: int = 200  # steps between two checks
     softness: float = 1.0  # ratio of a wall's motion to its next rest to that to its last one
     dragged: float = DRAGGED  # steps after which damping no longer slows down drift (`DRAGGED`)
+    shortest: int = SHORTEST_FALL  # steps before which no motion is a collapse (`SHORTEST_FALL`)
 
 
 def settle(
@@ -85,7 +86,7 @@ def hold_load(
         If more energy is spent than the load and the initial state can have supplied.
     """
     start, begun, given = state.motion.copy(), state.steps, run.given(state)
-    detector = CollapseDetector(elastic=sudden or run.system.weightless, shortest=SHORTEST_FALL)
+    detector = CollapseDetector(elastic=sudden or run.system.weightless, shortest=criteria.shortest)
     halfway = start
     calm, late, drags_less = 0, criteria.dragged / criteria.interval, False
     for look in range(criteria.budget // criteria.interval):

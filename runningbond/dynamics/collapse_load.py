@@ -125,9 +125,11 @@ def collapse_by_steps(
         status is ``failed`` if the run creates energy, as it does with too long a time step.
     """
     system, sizes = run.system, scene.block_sizes[run.system.owner]
-    # At finite displacements what falls may land on the ground before it has moved that far.
-    softness = min(MOST_SOFTNESS, rocking_softness(points)) if system.contacts is None else 1.0
-    criteria = Criteria(collapse=collapse * sizes, softness=softness, budget=budget)
+    criteria = Criteria(collapse=collapse * sizes, budget=budget)
+    if system.contacts is None:
+        criteria = replace(criteria, softness=min(MOST_SOFTNESS, rocking_softness(points)))
+    else:  # what falls may land on the ground before it has moved farther, or for longer
+        criteria = replace(criteria, shortest=0)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may carry all of the live load
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
     note = joined(note, beam_note(scene), ends_note(scene, points))
@@ -163,7 +165,7 @@ def collapse_by_steps(
     outcome = replace(outcome, steps=result.steps)
     outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears, above)
     # Of a fall under the dead load, the toe bears all when the wall has moved as far as counts as collapse.
-    counts = collapse * (1.0 if result.rests else softness)
+    counts = collapse * (1.0 if result.rests else criteria.softness)
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(counts * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves under its dead load as far as counts as collapse"

@@ -57,7 +57,7 @@ def judged(
     wall = known_wall(name)
     drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
     run = Run(replace(wall.system, viscosity=wall.system.viscosity + drag), local=local, viscous=viscous)
-    state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget, dragged=np.inf)
+    state, criteria = State.at_rest(wall.system), Criteria(wall.far, budget=budget, dragged=np.inf, shortest=0)
     verdict, right = settle(run, state, 0.0, criteria, sudden=True), False
     if verdict == "stable":
         ramp(run, state, 0.0, load * wall.multiplier, RAMP * state.steps)
@@ -109,7 +109,7 @@ def most_local(name: str = SLIDING) -> Row:
 def most_mass_rate(name: str) -> Row:
     """Largest rate of mass-proportional damping with which the collapse of a wall is not taken for rest."""
     wall, load = known_wall(name), 1 + BESIDE
-    beyond, criteria = BESIDE * wall.multiplier, Criteria(wall.far)
+    beyond, criteria = BESIDE * wall.multiplier, Criteria(wall.far, shortest=0)
     # Rest is first seen half an interval late, on average, and accepted at the last of `CALM` checks; a collapse must
     # be seen by the check before.
     looks = (CALM - 1.5) * criteria.interval * Run(wall.system).dt
