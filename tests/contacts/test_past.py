@@ -73,19 +73,38 @@ def test_separate_blocks_do_not_press_on_each_other(
     assert opening.min(initial=0.0) > -CHECKED_DEPTH * outline.margin
 
 
-@given(
+APART = given(
     at=st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)),
     turned=st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)),
     step=st.tuples(*[st.floats(-1.0, 1.0)] * 6),
     margin=st.floats(0.005, 0.2),
 )
+
+
+@APART
 @example(at=(-0.405, -0.092), turned=(2.183, -0.8605), step=(-0.958, 0.232, 0.802, 0.643, -0.466, -0.863), margin=0.149)
-@settings(max_examples=200)
+@settings(max_examples=100)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
 def test_blocks_that_stay_apart_get_no_contact_force(
     inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float
 ) -> None:
     """One block is anywhere around the other; both move by at most half the margin after the search."""
+    get_no_contact_force(inset, at, turned, step, margin)
+
+
+@pytest.mark.long
+@APART
+@settings(max_examples=2000)
+@pytest.mark.parametrize("inset", [0.0, 0.02])
+def test_blocks_that_stay_apart_get_no_contact_force_at_length(
+    inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float
+) -> None:
+    get_no_contact_force(inset, at, turned, step, margin)
+
+
+def get_no_contact_force(
+    inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float
+) -> None:
     scene, outline, motion = two_blocks(inset, at, turned)
     moved = motion.copy()
     way = margin / 2 / (np.sqrt(2) + 1) * np.reshape(step, (2, 3))

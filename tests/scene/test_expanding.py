@@ -65,10 +65,10 @@ def test_expanded_bricks_equal_bricks_drawn_without_mortar() -> None:
     assert slope[along[:, 0] > along[:, 1]].max() < 1e-3  # no bumps at the ends of head joints
 
 
-@settings(max_examples=25)
-@given(st.integers(0, 10**6), st.sampled_from([0.005, 0.01, 0.02]), st.floats(1.2, 2.0), st.booleans())
-def test_expanded_stones_fill_the_joints(seed: int, mortar: float, more: float, on_ground: bool) -> None:
-    """They contain the drawn stones, do not overlap, and stay near the outlines from which the joints were removed."""
+ANY_JOINTS = given(st.integers(0, 10**6), st.sampled_from([0.005, 0.01, 0.02]), st.floats(1.2, 2.0), st.booleans())
+
+
+def fill_the_joints(seed: int, mortar: float, more: float, on_ground: bool) -> None:
     true = crooked(seed)
     drawn, ground = shrunk(true, mortar / 2), [box(-1.0, -0.5, 2.2, 0.0)] if on_ground else []
     found = [shapely.Polygon(outline) for outline in expand(drawn, ground, more * mortar)[0]]
@@ -83,6 +83,20 @@ def test_expanded_stones_fill_the_joints(seed: int, mortar: float, more: float, 
             assert shapely.difference(shapely.Polygon(one), around, grid_size=1e-9).area < 1e-9
     if on_ground:
         assert together.bounds[1] == pytest.approx(0.0, abs=1e-6 * more * mortar)
+
+
+@settings(max_examples=13)
+@ANY_JOINTS
+def test_expanded_stones_fill_the_joints(seed: int, mortar: float, more: float, on_ground: bool) -> None:
+    """They contain the drawn stones, do not overlap, and stay near the outlines from which the joints were removed."""
+    fill_the_joints(seed, mortar, more, on_ground)
+
+
+@pytest.mark.long
+@settings(max_examples=200)
+@ANY_JOINTS
+def test_expanded_stones_fill_the_joints_at_length(seed: int, mortar: float, more: float, on_ground: bool) -> None:
+    fill_the_joints(seed, mortar, more, on_ground)
 
 
 @pytest.mark.parametrize("seed", range(6))

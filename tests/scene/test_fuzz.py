@@ -121,7 +121,7 @@ some_drawing = st.one_of(*[st.none()] * 9, outlines())
 
 
 @given(table=small_walls(), models=some_models, tolerance=tolerances, drawing=some_drawing)
-@settings(max_examples=40, derandomize=True, **ANY)
+@settings(max_examples=20, derandomize=True, **ANY)
 def test_random_scenes_give_outcomes_within_bounds(
     table: dict[str, Any], models: list[str], tolerance: float, drawing: Any
 ) -> None:
