@@ -33,6 +33,7 @@ from runningbond.scene import (
     build_scene,
 )
 from runningbond.scene.history import pulse
+from tests.at_length import at_length
 from tests.dynamics.test_led import brackets
 from tests.dynamics.test_push import angles, follows
 from tests.scene.test_any_outline import ELL, PORTAL, TEE, box, stars
@@ -127,12 +128,28 @@ SOMEWHERE = {
 
 
 @given(**SOMEWHERE, margin=st.floats(0.005, 0.2))
-@settings(max_examples=200)
+@settings(max_examples=100)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
 def test_separate_stones_do_not_press_on_each_other(
     inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], margin: float
 ) -> None:
     """One stone is above, beside or in the notch of the other."""
+    do_not_press(inset, forms, at, turned, margin)
+
+
+@pytest.mark.long
+@given(**SOMEWHERE, margin=st.floats(0.005, 0.2))
+@settings(max_examples=2000)
+@pytest.mark.parametrize("inset", [0.0, 0.02])
+def test_separate_stones_do_not_press_on_each_other_at_length(
+    inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], margin: float
+) -> None:
+    do_not_press(inset, forms, at, turned, margin)
+
+
+def do_not_press(
+    inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], margin: float
+) -> None:
     scene, outline, motion = beside(inset, forms, at, turned)
     one, other = np.array(polygons(scene, outline, motion))[scene.wall]
     assume(one.distance(other) > 1e-3)
@@ -164,7 +181,9 @@ def test_corner_contact_opening_equals_its_penetration(
     assert -opening.min() == pytest.approx(deep, abs=1e-10)
 
 
-@pytest.mark.parametrize(("model", "slope"), [(dem_dynamic, 30), (dem_dynamic, 45), (dem_dynamic, 60), (fem, 45)])
+@pytest.mark.parametrize(
+    ("model", "slope"), [(dem_dynamic, 30), (fem, 45), *at_length((dem_dynamic, 45), (dem_dynamic, 60))]
+)
 def test_block_with_its_toe_in_a_notch_topples_as_on_rough_ground(model: Any, slope: float) -> None:
     """λ = tan(α − θ): floor and slope of the notch hold a corner that would slide at λ = 0.1 by friction alone."""
     width, height = 0.06, 0.24
@@ -176,7 +195,7 @@ def test_block_with_its_toe_in_a_notch_topples_as_on_rough_ground(model: Any, sl
     follows(outcome, np.tan(alpha - angles(outcome.curve, corner[None], np.array([[1.0, 0.0]]))))
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_portal_topples_about_the_toe_of_its_leg(model: Any) -> None:
     """λ = tan(α − θ), where tan α is the horizontal arm of the centroid over its height."""
     side = 0.2

@@ -25,6 +25,7 @@ from runningbond.scene import (
     Tie,
     build_scene,
 )
+from tests.at_length import at_length
 from tests.limit.test_limit import rectangle
 
 RISE, SKEW = 0.4, 0.15
@@ -100,7 +101,7 @@ def test_fall_does_not_depend_on_how_far_supports_would_move() -> None:
     assert max(rest for rest, _ in intervals) == pytest.approx(min(fall for _, fall in intervals), rel=0.01)
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_arch_on_a_spreading_support_has_the_thrust_of_its_moved_hinges(model: Any) -> None:
     """From .577 of its weight to .72 at a fortieth of the span, to 2e-3; each ground carries half the weight."""
     scene = arch(0.05)
@@ -170,8 +171,15 @@ def leaning(width: float, height: float, **joint: Any) -> Scene:
     return replace(on_two_grounds(blocks, grounds, (0.1, 0.0), **joint), load=Load(live=(turns,)))
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
-@pytest.mark.parametrize(("width", "friction", "tangent"), [(0.06, 0.8, 0.12), (0.4, 0.1, 0.1)])
+@pytest.mark.parametrize(
+    ("model", "width", "friction", "tangent"),
+    [
+        (dem_dynamic, 0.06, 0.8, 0.12),
+        (dem_dynamic, 0.4, 0.1, 0.1),
+        (fem, 0.4, 0.1, 0.1),
+        *at_length((fem, 0.06, 0.8, 0.12)),
+    ],
+)
 def test_block_on_tilting_ground_topples_or_slides_at_the_exact_angle(
     model: Any, width: float, friction: float, tangent: float
 ) -> None:
@@ -184,7 +192,7 @@ def test_block_on_tilting_ground_topples_or_slides_at_the_exact_angle(
     assert fall < 1.035 * rest
 
 
-@pytest.mark.parametrize("angle", [-6.7, -6.84])
+@pytest.mark.parametrize("angle", [-6.84, *at_length(-6.7)])
 def test_block_stands_on_ground_that_tilts_by_less_than_its_slope(angle: float) -> None:
     """Below 6.843°; the last of 20 stages shakes it so that it falls, and a fall counts only in a short one."""
     scene = leaning(0.06, 0.5, friction=0.8)
@@ -228,8 +236,7 @@ def test_block_rotates_with_its_ground(model: Any) -> None:
     assert seen[-1][1, :2] == pytest.approx(gone, rel=1e-4)
 
 
-@pytest.mark.parametrize("order", [1, -1])
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize(("model", "order"), [(dem_dynamic, 1), (fem, -1), *at_length((dem_dynamic, -1), (fem, 1))])
 def test_anchors_stay_fixed_while_supports_move(model: Any, order: int) -> None:
     """A block on the moving ground is tied to an anchor 2 m above: the tie stretches by √(4 + d²) − 2 m."""
     by, stiffness = (0.05 * order, 0.0), 1e9 * 1e-6 / 2.0
@@ -303,8 +310,15 @@ def crushed_bearing(strength: float, cap_shear: float) -> tuple[Scene, float]:
     return scene, float(brentq(excess, 0.0, 0.3))
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
-@pytest.mark.parametrize(("strength", "cap_shear"), [(4e4, 0.0), (8e4, 0.0), (8e4, 9.0)])
+@pytest.mark.parametrize(
+    ("model", "strength", "cap_shear"),
+    [
+        (dem_dynamic, 4e4, 0.0),
+        (dem_dynamic, 8e4, 9.0),
+        (fem, 8e4, 9.0),
+        *at_length((dem_dynamic, 8e4, 0.0), (fem, 4e4, 0.0), (fem, 8e4, 0.0)),
+    ],
+)
 def test_bearing_crushes_once_too_little_of_it_is_left(model: Any, strength: float, cap_shear: float) -> None:
     """The fall is within 8 mm of the exact place: contacts are found again every 6 mm, and pressures are not all alike.
 

@@ -15,6 +15,7 @@ from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.models import run_model
 from runningbond.results import Outcome, load_outcome
 from runningbond.scene import Action, Array, Forces, Indices, Scene, SceneError
+from tests.at_length import at_length
 
 WALL = rb.Wall.courses(
     [[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.4
@@ -28,6 +29,10 @@ def tables(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
         pytest.importorskip("pandas")
     else:
         monkeypatch.setitem(sys.modules, "pandas", None)
+
+
+ONE_KIND = pytest.mark.parametrize("tables", ["structured arrays", *at_length("pandas")], indirect=True)
+"""For sweeps that take seconds and whose results do not depend on the kind of table."""
 
 
 @pytest.mark.parametrize("values", [[], np.arange(0.6, 0.4, 0.1), iter([])])
@@ -89,6 +94,7 @@ def test_sweep_reuses_stored_outcomes(tmp_path: Path, monkeypatch: pytest.Monkey
     assert len(computed) == 1
 
 
+@ONE_KIND
 def test_parallel_sweep_gives_the_same_results() -> None:
     changes = {"joint.friction": [0.2, 0.3]}
     apart, alone = (rb.sweep(WALL, changes, "limit", jobs=jobs) for jobs in (2, 1))
@@ -218,6 +224,7 @@ BLOCK = rb.Wall.running_bond(
 )
 
 
+@ONE_KIND
 def test_finite_displacements_and_distances_are_stored_separately(tmp_path: Path) -> None:
     """λ = b / h of a block that overturns; small displacements and two distances give three separate outcomes."""
     said, far = [], {"displacements": "finite", "distance": 0.01}
