@@ -61,7 +61,7 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     Unstable
         As in `hold_load`.
     """
-    criteria = replace(criteria, collapse=criteria.softness * criteria.collapse)
+    criteria = replace(criteria, collapse=criteria.softness * criteria.collapse, shortest=0)
     state, keeps = State.at_rest(run.system), keeps_damage(run)
     held = len(run.system.late) > 0 or bool(run.system.ties.slack.any())
     unseen = keeps or held

@@ -125,6 +125,12 @@ def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
     return tables[0], list(_filled_lines(tables[0]))
 
 
+def _separator(heads: str) -> str:
+    """Separator of a table with this first line; its heads may have a comma each, as in "Vmax,+ [kN]"."""
+    other = max((each for each in SEPARATORS if each != ","), key=heads.count)
+    return other if 0 < heads.count(other) >= heads.count(",") - 1 else ","
+
+
 def _is_empty(cells: list[str]) -> bool:
     """Whether a line has no entries."""
     return not any(cell.strip() for cell in cells)
@@ -140,7 +146,7 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
     try:
         text = path.read_bytes().decode("utf-8-sig")
         told = [line for line in text.splitlines() if line.strip() and not COMMENT.match(line)]
-        separator = max(SEPARATORS, key=told[0].count) if told else ","
+        separator = _separator(told[0] if told else "")
         rest, number = io.StringIO(text, newline=""), 0
         for line in rest:
             number += 1

@@ -23,7 +23,9 @@ GROUPS = {"R": ROCKING, "TC": ROCKING, "F": DIAGONAL, "S": DIAGONAL, "DT": DIAGO
 """Modes by the letters of the tables; toe crushing belongs to rocking."""
 
 NAMED = {"ROCKING": ROCKING, "TOE CRUSHING": ROCKING, "SLIDING": SLIDING}
-NAMED |= {f"{kind}DIAGONAL{crack}": DIAGONAL for kind in ("", "STEPPED ") for crack in ("", " CRACK", " CRACKING")}
+NAMED |= {
+    f"{kind}DIAGONAL{crack}": DIAGONAL for kind in ("", "STEPPED ") for crack in ("", " CRACK", " CRACKS", " CRACKING")
+}
 """Modes by their names, where a table does not have the letters."""
 
 HALF = 0.5

@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
@@ -31,7 +33,10 @@ TITLE_LENGTH = 48
 """Characters per line of the title, which fit into the narrowest picture."""
 
 FIVE_COLUMNS = 45
-"""Letters in all entries of a key below which five of them fit side by side; otherwise three do."""
+"""Letters in all entries of a key below which five of them fit side by side; otherwise at most three do."""
+
+HANDLE, HANDLE_GAP, COLUMN_GAP = 1.5, 0.5, 1.0
+"""Widths of a symbol in the key, and of the gaps after it and between columns, in font sizes."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,8 @@ class Caption:
     @property
     def _columns(self) -> int:
         letters = sum(len(handle.get_label()) for handle in self.key)
-        return self.columns or (5 if letters < FIVE_COLUMNS else 3)
+        fitting = [n for n in (3, 2) if _key_width([handle.get_label() for handle in self.key], n) <= 72 * WIDTH]
+        return self.columns or (5 if letters < FIVE_COLUMNS else next(iter(fitting), 1))
 
     def write(self, axes: "Axes") -> None:
         """Write the text above and below axes."""
@@ -80,10 +86,24 @@ class Caption:
                 _write(axes, text, 1.0, level, va="bottom", fontsize=TYPE, fontweight=weight)
                 level += LINE
         place: dict[str, Any] = {"bbox_to_anchor": (0.5, 0.0), "ncols": self._columns, "borderaxespad": 0.4}
-        spacing = {"handlelength": 1.5, "handletextpad": 0.5, "columnspacing": 1.0, "borderpad": 0.0}
+        spacing = {"handlelength": HANDLE, "handletextpad": HANDLE_GAP, "columnspacing": COLUMN_GAP, "borderpad": 0.0}
         legend = place | spacing | {"frameon": False, "fontsize": SMALL_TYPE}
         axes.legend(handles=self.key, loc="upper center", **legend)
         _write(axes, "\n".join(self.notes), 0.0, -self._key_height, va="top", fontsize=SMALL_TYPE, color=DARK)
+
+
+def _key_width(labels: Sequence[str], columns: int) -> float:
+    """Width of a key [pt] whose entries are spread over columns, one column after the other."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(size=SMALL_TYPE)
+    widths = [
+        max(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0] for line in label.split("\n"))
+        for label in labels
+    ]
+    text = sum(float(max(part)) for part in np.array_split(widths, columns) if len(part))
+    return text + SMALL_TYPE * (columns * (HANDLE + HANDLE_GAP) + (columns - 1) * COLUMN_GAP)
 
 
 def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -> None:

@@ -51,7 +51,7 @@ class Resting:
     @classmethod
     def of(cls, scene: Scene, model: str, system: BlockSystem) -> "Resting":
         """Bring a wall to rest under its dead load."""
-        criteria = Criteria(collapse=U_CRIT * scene.block_sizes[system.owner], shortest=0)
+        criteria = Criteria(collapse=U_CRIT * scene.block_sizes[system.owner])
         loaded = put_on_dead_load(Run(system, local=CALMING), criteria)
         loaded.state.velocity[:] = 0.0
         return cls(scene, model, system, loaded.state, loaded.verdict)

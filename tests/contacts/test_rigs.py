@@ -277,6 +277,14 @@ def test_run_ends_when_the_beam_falls_on_a_crushed_wall(displacements: Any) -> N
     assert -10.0 < column(outcome, "beam uplift [m]")[-1] < -0.1
 
 
+def test_driven_point_turns_and_ends_where_its_path_does() -> None:
+    """The time step depends on the contacts; with that of the beginning the paths of some walls ended 1 % too far."""
+    scene = rig(3, beam__drive={"amplitudes": [0.02], "at": 0.6})
+    moved, path = finite(scene, 0.2).curve[:, 0], np.array(scene.drive_path)
+    assert path.tolist() == [0.02, -0.02, 0.0]
+    assert (moved.max(), moved.min(), moved[-1]) == pytest.approx(path, abs=1e-13)
+
+
 def test_rotated_beam_is_pushed_at_the_current_position_of_its_point() -> None:
     """A push of 1 N has a moment about the origin equal to the current height of the point."""
     scene = rig(beam__drive={"displacement": [0.03, 0], "at": 0.6})

@@ -71,6 +71,33 @@ def is_bracketed(outcome: Outcome, exact: float) -> bool:
     return outcome.lower <= exact * (1 + 1e-6) and exact * (1 - 1e-6) <= outcome.upper
 
 
+LEANING = [
+    [(0.44, 0.06), (0.45, 0.0), (0.6, 0.0), (0.6, 0.39), (0.52, 0.37)],
+    [(0.0, 0.6), (0.36, 0.6), (0.4, 0.4), (0.28, 0.32), (0.26, 0.32), (0.0, 0.58)],
+    [(0.28, 0.32), (0.4, 0.4), (0.52, 0.37), (0.44, 0.06)],
+    [(0.26, 0.32), (0.0, 0.58), (0.0, 0.01)],
+    [(0.36, 0.6), (0.4, 0.4), (0.52, 0.37), (0.6, 0.39), (0.6, 0.6)],
+    [(0.28, 0.32), (0.26, 0.32), (0.0, 0.01), (0.0, 0.0), (0.45, 0.0), (0.44, 0.06)],
+]
+"""Stones of which one has no support on its left."""
+
+
+def test_fall_of_soft_joints_under_the_dead_load_is_no_lack_of_stiffness() -> None:
+    """The overlap at a toe far into the fall says nothing about the joints; on stiffer ones the wall falls likewise."""
+    wall = Wall.outlines(
+        LEANING,
+        thickness=0.2,
+        density=2000.0,
+        friction=0.5,
+        normal_stiffness=3e8,
+        shear_stiffness=1.2e8,
+        compressive_strength=1e9,
+        live={"kind": "lateral", "direction": "left"},
+    )
+    assert wall.run("limit").status == "infeasible"
+    assert wall.run("dem-dynamic").status == "infeasible"
+
+
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("wall", [hanging, crushed])
 @pytest.mark.parametrize("share", [0.6, 0.8, 0.96, 0.97, 0.98, 0.985, 0.99])

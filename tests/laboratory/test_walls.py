@@ -198,6 +198,7 @@ def test_report_words_are_split_and_unknown_ones_kept(tmp_path: Path) -> None:
         ("R-TC", ("R/TC",)),
         ("S", ("F",)),
         ("Stepped diagonal crack and sliding", ("F", "SL")),
+        ("Diagonal cracks", ("F",)),
     ],
 )
 def test_modes_may_be_written_out(said: str, modes: tuple[str, ...], tmp_path: Path) -> None:
@@ -512,6 +513,21 @@ def test_table_does_not_depend_on_the_spreadsheet_format(tmp_path: Path) -> None
     (wrong,) = read_folder(tmp_path)
     with pytest.raises(SceneError, match="tests.csv, line 3: L = 'long': must be a number"):
         scene_of(wrong, Features())
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+@pytest.mark.parametrize("heads", [["Vmax,+ [kN]"], ["σ0,pc [MPa]", "Vmax,+ [kN]", "Vmax,- [kN]"]])
+def test_heads_with_as_many_commas_as_separators_are_told_apart(
+    separator: str, heads: list[str], tmp_path: Path
+) -> None:
+    scene_file = shipped_walls()["J4D"].scene_file
+    assert scene_file is not None
+    (tmp_path / "J2G.toml").write_text(scene_file.read_text())
+    entries = {"σ0,pc [MPa]": "0,3", "Vmax,+ [kN]": "38,5", "Vmax,- [kN]": ""}
+    lines = [["Test unit name", *heads], ["J2G", *(entries[head] for head in heads)]]
+    (tmp_path / "tests.csv").write_text("\n".join(separator.join(line) for line in lines))
+    (wall,) = read_folder(tmp_path)
+    assert (wall.name, wall.peaks) == ("J2G", (38.5e3,))
 
 
 @pytest.mark.parametrize("factor", [1e3, 1e-3])

@@ -13,6 +13,7 @@ import pytest
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from PIL import Image
 
 from dem.static import dem_static
@@ -252,6 +253,19 @@ def test_nothing_is_cut_off_at_figure_edge(kind: str) -> None:
 def test_key_of_all_states_fits_the_width() -> None:
     """Frames of walls whose joints slide, open, debond and crush have a key of six entries."""
     caption = Caption(["wall"], "", [], colour_key(crushes=True))
+    figure, axes = figure_with_room((0.0, 1.0, 0.0, 1.0), caption)
+    caption.write(axes)
+    legend = axes.get_legend()
+    assert legend is not None
+    box = legend.get_window_extent().transformed(figure.transFigure.inverted())
+    assert box.x0 >= 0
+    assert box.x1 <= 1
+
+
+def test_key_with_a_long_entry_has_fewer_columns() -> None:
+    """Five entries, of which the last is as wide as half of the picture, are cut off in three columns."""
+    long = Line2D([], [], label="force ≤ 1.674 kN, 3 far beside their joints")
+    caption = Caption(["wall"], "", [], [Line2D([], [], label="hinge"), *colour_key([JointState.OPEN]), long])
     figure, axes = figure_with_room((0.0, 1.0, 0.0, 1.0), caption)
     caption.write(axes)
     legend = axes.get_legend()
