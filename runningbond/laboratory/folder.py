@@ -126,9 +126,12 @@ def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
 
 
 def _separator(heads: str) -> str:
-    """Separator of a table with this first line; its heads may have a comma each, as in "Vmax,+ [kN]"."""
-    other = max((each for each in SEPARATORS if each != ","), key=heads.count)
-    return other if 0 < heads.count(other) >= heads.count(",") - 1 else ","
+    """Separator of a table with this first line: that beside a required head, as others contain some themselves."""
+    for name in (NAME, *HEADS):
+        own = rf'{name}[^"{SEPARATORS}]*"? *'
+        if beside := re.search(rf'{own}([{SEPARATORS}])|([{SEPARATORS}]) *"?{own}$', heads, re.IGNORECASE):
+            return str(next(filter(None, beside.groups())))
+    return max(SEPARATORS, key=heads.count)
 
 
 def _is_empty(cells: list[str]) -> bool:

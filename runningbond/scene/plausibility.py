@@ -179,7 +179,7 @@ def _ties(scene: Scene) -> Iterator[str]:
         yield from AREA.doubts(f"tie[{k}].area", area)
         if most / area > UNREAL_YIELD_STRESS and AREA.least <= area <= AREA.most:
             yield f"tie[{k}].yield = {most:g}: is a force, {most / area:.3g} Pa on the tie's area; is a stress meant?"
-        elif 1e3 * most / area < UNREAL_YIELD_STRESS and most / area < LOW_YIELD_STRESS and area <= AREA.most:
+        elif most / area < LOW_YIELD_STRESS and AREA.least <= area <= AREA.most:
             yield f"tie[{k}].yield = {most:g}: is only {most / area:.3g} Pa on the tie's area; are {most:g} kN meant?"
     anchors = np.argwhere(ties.block == ANCHOR).tolist()
     wall = [shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)] if anchors else []

@@ -530,6 +530,19 @@ def test_heads_with_as_many_commas_as_separators_are_told_apart(
     assert (wall.name, wall.peaks) == ("J2G", (38.5e3,))
 
 
+@pytest.mark.parametrize("heads", ["displacement_mm,force_kN\t", "displacement_mm,\tforce_kN"])
+def test_separator_is_that_beside_a_required_head(heads: str, tmp_path: Path) -> None:
+    """A spreadsheet may leave others at the end of a line, or align columns with them."""
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE, curve=f"{heads}\n0,0\n10,61\n"))
+    assert wall.curve == pytest.approx(np.array([[0.0, 0.0], [0.01, 61e3]]))
+
+
+def test_name_of_a_table_decides_on_its_separator(tmp_path: Path) -> None:
+    """Heads with remarks in brackets may contain semicolons."""
+    heads = HEADS.replace("Failure type", "Failure type (crack; slip)")
+    assert one(tmp_path, GRANITE).peaks == read_folder(write_folder(tmp_path / "a", GRANITE, heads=heads))[0].peaks
+
+
 @pytest.mark.parametrize("factor", [1e3, 1e-3])
 def test_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_path: Path) -> None:
     """Newtons under a head in kilonewtons were once accepted without a message."""
