@@ -103,20 +103,15 @@ class BeamDrive(Lead):
             paces = pace(n, peaks.windows)
             steps = max(peaks.windows, round(abs(goal - at) / (speed * run.dt * paces.mean(axis=1).sum())))
             lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows)
-            ahead = float((paces @ lengths).sum())
-            top = (goal - at) / (run.dt * ahead)
+            top = (goal - at) / (run.dt * float((paces @ lengths).sum()))
             for k, parts in enumerate(paces.tolist()):
                 for window, (part, length) in enumerate(zip(parts, lengths.tolist(), strict=True), start=1):
-                    before, gathered, since = run.driven_speed(state), self._gathered(state), state.time
-                    if not self.is_small:  # the time step depends on the contacts
-                        top = (goal - self.moved(state)) / (run.dt * ahead)
+                    before, gathered = run.driven_speed(state), self._gathered(state)
                     force = run.drive(state, top * part, length, given=given)
-                    ahead -= part * length
-                    taken = state.time - since
-                    force -= (top * part - before) / (mobility * taken)  # the driven body's own inertia
+                    force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
                     # At finite displacements blocks collide all the time, which means over rows average out.
                     knock = not self.is_small and k >= RAMP
-                    inertia = 0.0 if knock else (self._gathered(state) - gathered) / taken
+                    inertia = 0.0 if knock else (self._gathered(state) - gathered) / (length * run.dt)
                     peaks.see(force, inertia, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                     if window == peaks.windows // 2:
                         middle = state.copy()

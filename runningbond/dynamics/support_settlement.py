@@ -144,11 +144,9 @@ class SupportSettlement(Lead):
         windows = windows_of_stage(stage)
         paces = pace(rows, windows)
         steps = max(1, round(stage / paces.size))
-        ahead, moving, seen = float(paces.sum()), list[float](), state.steps
+        top, moving, seen = by / (run.dt * steps * paces.sum()), list[float](), state.steps
         for part in paces.ravel().tolist():
-            top, since = by / (run.dt * steps * ahead), state.time  # the time step depends on the contacts
             moving.append(self.share(state, top * part, steps, given))
-            by, ahead = by - top * part * (state.time - since), ahead - part
             if state.steps - seen >= self.criteria.interval:
                 seen = state.steps
                 if self.falls(state):

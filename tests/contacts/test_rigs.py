@@ -277,15 +277,6 @@ def test_run_ends_when_the_beam_falls_on_a_crushed_wall(displacements: Any) -> N
     assert -10.0 < column(outcome, "beam uplift [m]")[-1] < -0.1
 
 
-def test_driven_point_ends_where_its_path_does() -> None:
-    """The time step depends on the contacts; with that at the beginning the path of this wall ends .04 mm too far."""
-    courses = {"block_width": 0.3, "block_height": 0.15, "courses": [[1, 1], [0.5, 1, 0.5]] * 2}
-    tables: dict[str, Any] = {f"wall__{key}": value for key, value in courses.items()}
-    drive = {"displacement": [0.08, 0], "at": 0.65, "rate": 0.2}
-    scene = rig(**tables, joint__friction=0.4, joint__inset=0.003, load__gravity=9.81, beam__drive=drive)
-    assert finite(scene, 0.1).curve[-1, 0] == pytest.approx(0.08, abs=1e-9)
-
-
 def test_rotated_beam_is_pushed_at_the_current_position_of_its_point() -> None:
     """A push of 1 N has a moment about the origin equal to the current height of the point."""
     scene = rig(beam__drive={"displacement": [0.03, 0], "at": 0.6})
