@@ -29,9 +29,9 @@ Walls that move steadily are left alone: combined damping dissipates more of a f
 SHORTEST_FALL = 10_000
 """Steps before which no motion under a live load is a collapse, unless it passes the last mark of `CollapseDetector`.
 
-Where joints yield one after another a wall may move as far as others fall, within some 600 to 4000 steps, and then rest
-because joints yield that had hardly moved before. Under loads just too large, walls fall for 5000 to 100 000 steps. At
-finite displacements, where what falls may land on the ground, and under the dead load falls may be shorter.
+Where joints yield one after another a wall may soon have moved as far as others fall, and then rest as joints yield
+that had hardly moved before. At finite displacements, where what falls may land on the ground, and under the dead load
+falls may be shorter.
 """
 
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]

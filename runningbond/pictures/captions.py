@@ -75,7 +75,7 @@ class Caption:
     @property
     def _columns(self) -> int:
         letters = sum(len(handle.get_label()) for handle in self.key)
-        # Drawn letters are up to 3 % wider, because they begin at whole pixels.
+        # Drawn letters are a little wider, because they begin at whole pixels.
         room = 0.96 * 72 * WIDTH
         fitting = [n for n in (3, 2) if _key_width([handle.get_label() for handle in self.key], n) <= room]
         return self.columns or (5 if letters < FIVE_COLUMNS else next(iter(fitting), 1))
