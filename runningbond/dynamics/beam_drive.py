@@ -91,6 +91,7 @@ class BeamDrive(Lead):
     def go(self, traverse: Traverse, speed: float) -> State:
         """Drive the beam along its path at a largest speed [m/s]; return the state at its end."""
         run, state, at = self.run, self.start.copy(), 0.0
+        run.return_to(state)
         self.observe(run, state, 0.0)
         self.note(traverse, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
@@ -103,16 +104,22 @@ class BeamDrive(Lead):
             paces = pace(n, peaks.windows)
             steps = max(peaks.windows, round(abs(goal - at) / (speed * run.dt * paces.mean(axis=1).sum())))
             lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows)
-            top = (goal - at) / (run.dt * float((paces @ lengths).sum()))
+            ahead, step, until = float((paces @ lengths).sum()), run.dt, state.time
+            top = (goal - at) / (step * ahead)
             for k, parts in enumerate(paces.tolist()):
                 for window, (part, length) in enumerate(zip(parts, lengths.tolist(), strict=True), start=1):
-                    before, gathered = run.driven_speed(state), self._gathered(state)
-                    force = run.drive(state, top * part, length, given=given)
-                    force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
+                    before, gathered, since = run.driven_speed(state), self._gathered(state), state.time
+                    until += length * step
+                    taken = run.steps_until(until, state)  # time steps change with the contacts
+                    if not self.is_small and k >= n - RAMP:  # braking takes up what whole steps have left
+                        top = (goal - self.moved(state)) / (step * ahead)
+                    ahead -= part * length
+                    force = run.drive(state, top * part, taken, given=given)
+                    force -= (top * part - before) / (mobility * (state.time - since))  # the driven body's own inertia
                     # At finite displacements blocks collide all the time, which means over rows average out.
                     knock = not self.is_small and k >= RAMP
-                    inertia = 0.0 if knock else (self._gathered(state) - gathered) / (length * run.dt)
-                    peaks.see(force, inertia, length, state, len(traverse.rows) + (window > peaks.windows // 2))
+                    inertia = 0.0 if knock else (self._gathered(state) - gathered) / (state.time - since)
+                    peaks.see(force, inertia, taken, state, len(traverse.rows) + (window > peaks.windows // 2))
                     if window == peaks.windows // 2:
                         middle = state.copy()
                 # The mean force of a row belongs to the middle of the row.

@@ -150,10 +150,15 @@ class Run:
             return self.interface
         return self._update.interface_on(contacts)
 
-    def _return_to(self, state: State) -> None:
+    def return_to(self, state: State) -> None:
         """Continue with the interface on the contacts of a state, which may be another state than before."""
         if (interface := self.interface_of(state)) is not self.interface:
             self._take_up(interface, contacts_of(state))
+
+    def steps_until(self, time: float, state: State) -> int:
+        """Number of steps that bring a state to a time [s], on its present contacts; at least one."""
+        self.return_to(state)
+        return max(1, round((time - state.time) / self.dt))
 
     def _pieces(self, state: State, steps: int, load: Array, more: float | None) -> Iterator[int]:
         """Numbers of steps to take one after the other; the contacts stay valid during each of them.
@@ -166,7 +171,7 @@ class Run:
             return
         update, acceleration = self._update, self._update.acceleration(load)
         while steps > 0:
-            self._return_to(state)
+            self.return_to(state)
             loads = acceleration, state.multiplier if more is None else more
             piece = update.steps_until_next_look(state, self.dt, *loads)
             if not piece:
@@ -286,7 +291,7 @@ class Run:
         if self.local:
             raise ValueError("local damping would remember a step that is not taken")
         interface, contacts, ahead = self.interface, self._contacts, state.copy()
-        self._return_to(state)
+        self.return_to(state)
         self._take(CONTROLS.index("held"), ahead, load, self.system.live, 0.0, 1, (0, math.inf, ahead.supplied))
         if self._contacts is not contacts:
             self._take_up(interface, contacts)

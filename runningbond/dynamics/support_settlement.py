@@ -140,13 +140,17 @@ class SupportSettlement(Lead):
         Return the mean share that supports carry towards the end of their motion.
         """
         run, motion, rows = self.run, self.run.system.carried.motion, 2 * RAMP
+        run.return_to(state)
         stage = rows / (STAGES * speed * run.dt * pace(rows).sum())
         windows = windows_of_stage(stage)
         paces = pace(rows, windows)
         steps = max(1, round(stage / paces.size))
-        top, moving, seen = by / (run.dt * steps * paces.sum()), list[float](), state.steps
+        ahead, window, until = float(paces.sum()), steps * run.dt, state.time
+        moving, seen = list[float](), state.steps
         for part in paces.ravel().tolist():
-            moving.append(self.share(state, top * part, steps, given))
+            now, since, until = part * by / (window * ahead), state.time, until + window
+            moving.append(self.share(state, now, run.steps_until(until, state), given))
+            by, ahead = by - now * (state.time - since), ahead - part
             if state.steps - seen >= self.criteria.interval:
                 seen = state.steps
                 if self.falls(state):

@@ -116,14 +116,16 @@ def test_arch_on_a_spreading_support_has_the_thrust_of_its_moved_hinges(model: A
 
 
 def test_arch_falls_once_its_hinges_are_collinear() -> None:
-    """A block's diagonal equals half the span at a spread of 0.154 m; corners are rounded by 2 mm.
+    """The distance between a block's hinges equals half the span at a spread of 0.1511 m; corners are rounded by 2 mm.
 
     At small displacements it never falls, and its thrust stays constant.
     """
-    line = 2 * (math.hypot(1.0, RISE) - 1.0)
-    outcome = far(arch(0.2, inset=0.002))
+    inset = 0.002
+    along = inset / math.hypot(SKEW, RISE)
+    line = 2 * (math.hypot(1.0 + along * SKEW, RISE - inset - along * RISE) - 1.0 - along * SKEW)
+    outcome = far(arch(0.2, inset=inset))
     rest, fall = fall_interval(outcome)
-    assert 0.99 * line < rest < fall < 1.01 * line
+    assert 0.998 * line < rest < fall < 1.004 * line  # joints deform: thrusts grow without bound up to there
     # Its thrust grows without bound up to there, so no share is its answer.
     assert outcome.status == "undecided"
     assert outcome.upper is not None
@@ -132,8 +134,20 @@ def test_arch_falls_once_its_hinges_are_collinear() -> None:
     assert left[2] < -0.3 < 0.3 < right[2]
     assert left[1] == pytest.approx(right[1], rel=1e-2)
     assert outcome.path[:, outcome.path_columns.index("at rest")].all()
-    small = dem_dynamic(arch(0.2, inset=0.002), 0.01)
+    small = dem_dynamic(arch(0.2, inset=inset), 0.01)
     assert small.curve[-1] == pytest.approx([0.2, small.curve[0, 1]], rel=0.02)
+
+
+def test_support_is_where_its_path_ends_although_blocks_turn() -> None:
+    """Time steps depend on the contacts: with those of the beginning of each stage it ended 0.3 % short of that."""
+    seen: list[Array] = []
+
+    def observe(run: Run, state: State, share: float) -> None:
+        seen.append(run.system.motion_of_blocks(state.motion)[-1])
+
+    outcome = dem_dynamic(arch(0.04, inset=0.002), 0.01, displacements="finite", observe=observe)
+    assert outcome.curve[-1, 0] == pytest.approx(0.04, rel=1e-9)
+    assert seen[-1] == pytest.approx([0.04, 0.0, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize(("spread", "falls"), [(0.09, False), (0.25, True)])
