@@ -1,7 +1,9 @@
 """A wall in Python: the tables of a scene file, with the same checks; changed by copies, run and drawn."""
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, reduce
+from hashlib import sha256
+from operator import getitem
 from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -85,6 +87,7 @@ class Wall:
         self._description: dict[str, Any] = as_in_a_file(description)
         self.folder = path_of("folder", folder).absolute()  # the current folder may change later
         self.scene  # noqa: B018 - built at once, so that errors are raised where the description is written
+        self._digests = {key: sha256(file.read_bytes()).digest() for key, file in self._files().items()}
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any], folder: str | Path = ".") -> "Wall":
@@ -252,7 +255,17 @@ class Wall:
             if "." in full_name:
                 raise SceneError(name, f'is within a table; give it as {{"{full_name}": {abbreviated(value)}}}', value)
             _check_has_its_table(name, value)
-        return Wall(merge_changes(self._description, [*nested_changes, tables]), self.folder)
+        copy = Wall(merge_changes(self._description, [*nested_changes, tables]), self.folder)
+        for key, file in self._files().items():
+            if copy._files().get(key) == file and copy._digests[key] != self._digests[key]:
+                raise SceneError(key, "has changed since the wall was read from it; read the wall again", file.name)
+        return copy
+
+    def _files(self) -> dict[str, Path]:
+        """The drawing and the record that the wall is read from, by their keys."""
+        wall, history = self._description["wall"], self._description["load"].get("history", {})
+        named = {"wall.drawing": wall.get("drawing"), "load.history.file": history.get("file")}
+        return {key: self.folder / name for key, name in named.items() if name is not None}
 
     @property
     def description(self) -> dict[str, Any]:
@@ -404,12 +417,11 @@ class Wall:
         from .scene_writer import toml
 
         description, path = {"title": self.scene.title} | self.description, path_of("path", path)
-        for table, key in ((description["wall"], "drawing"), (description["load"].get("history", {}), "file")):
-            if key in table:
-                # Resolved, because ".." leads out of the folder that a link points to, not of the one that it lies in.
-                file = self.folder / table[key]
-                there = relpath(file.parent.resolve() / file.name, path.parent.resolve())
-                table[key] = Path(there).as_posix()
+        for name, file in self._files().items():
+            *tables, key = name.split(".")
+            table = reduce(getitem, tables, description)
+            # Resolved, because ".." leads out of the folder that a link points to, not of the one that it lies in.
+            table[key] = Path(relpath(file.parent.resolve() / file.name, path.parent.resolve())).as_posix()
         write_atomically(path, toml(description).encode())
 
     def __repr__(self) -> str:

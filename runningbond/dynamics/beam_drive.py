@@ -126,7 +126,7 @@ class BeamDrive(Lead):
                 self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
                 seen.append((middle.motion, self.crushed(middle)))
                 if (k + 1) % STRIDE == 0:
-                    self.observe(run, state, traverse.rows[-1].force)
+                    self.observe(run, middle, traverse.rows[-1].force)
                 if self.falls(state):
                     traverse.verdict = "collapse"
                     break

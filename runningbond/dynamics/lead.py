@@ -233,10 +233,10 @@ class Lead(ABC):
 
     @cached_property
     def work_of_a_block(self) -> float:
-        """Work of the dead load [J] if everything that moves comes down by the size of a block."""
+        """Work of the dead load [J] if everything that moves comes down by the size across which blocks overturn."""
         system = self.run.system
         load = np.where(np.isfinite(system.mass), system.dead, 0.0)[system.rigid[:, :2]]
-        return float(np.hypot(*load.T).sum() * self.scene.block_size)
+        return float(np.hypot(*load.T).sum() * self.scene.overturning_size)
 
 
 def pace(rows: int, windows: int = 1) -> Array:

@@ -291,7 +291,7 @@ class Push(Lead):
             drags.append((self._damped(state) - taken) / (full_way * power / speed))
             seen.append((middle.motion, self.crushed(middle)))
             if len(traverse.rows) % STRIDE == 0:
-                self.observe(run, state, traverse.rows[-1].force)
+                self.observe(run, middle, traverse.rows[-1].force)
             went = run.system.farthest(state.motion - before)
             traverse.gone += went
             if (traverse.rows[-1].force <= 0 and traverse.answer > self.least) or self.falls(state):

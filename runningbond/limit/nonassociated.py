@@ -122,7 +122,7 @@ def _collapse(
     proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)
     if not proved:
-        return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
+        return _uncertified(outcome, result, cut, _bounds(state) if bounded else None)
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
     if cut.has_support and is_bridged(cut, loads[-1][1], dilates=False):
         return _bridged(outcome, cut)
@@ -247,6 +247,11 @@ def _effort(result: SearchLog) -> str:
     return f"{result.starts} starts, {result.programs} linear programs"
 
 
+def _bounds(state: LimitState) -> list[float]:
+    """The associated load by forces and by the mechanism, in order; on large walls they differ a little."""
+    return sorted(state.system.load(each) for each in (state.forces.multiplier, state.kinematic_multiplier))
+
+
 def _stopped(result: SearchLog) -> str:
     return ", interrupted" if result.interrupted else ""
 
@@ -257,20 +262,18 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
     return replace(outcome, status="unbounded", message=message)
 
 
-def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bound: float | None) -> Outcome:
-    """Outcome of a wall without a certified collapse, bounded by the associated multiplier if there is one."""
+def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bounds: list[float] | None) -> Outcome:
+    """Outcome of a wall without a certified collapse; the associated load bounds it if its `bounds` are known."""
     programs = f"no collapse certified from {_effort(result)}{_stopped(result)}"
     if result.frictionless:
         message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"
         return replace(outcome, status="unbounded", message=message)
-    if bound is not None and system.has_support:
-        share = system.load(bound)
-        if is_bridged(system, share, dilates=False):
+    if bounds and system.has_support:
+        if is_bridged(system, bounds[0], dilates=False):
             return _bridged(outcome, system)
-        return replace(outcome, lower=share, message=f"{programs}; lower is the associated bound")
-    if bound is not None:
-        message = f"{programs}; upper is the associated bound"
-        return replace(outcome, upper=system.load(bound), message=message)
+        return replace(outcome, lower=bounds[0], message=f"{programs}; lower is the associated bound")
+    if bounds:
+        return replace(outcome, upper=bounds[1], message=f"{programs}; upper is the associated bound")
     message = "forces within Coulomb's law balance any multiple of the live load"
     if result.growing and not result.interrupted:
         message = f"self-locking: {message}; {programs}, which does not exclude one"

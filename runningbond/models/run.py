@@ -9,6 +9,7 @@ from runningbond.results.outcome import joined
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
 
+from .corners import passes_corners
 from .model import Model
 from .notes import keeps_strength, led_far, left_out, moves, tilted_with_the_ground
 from .registry import MODELS, TOLERANCE, check_parameters, check_tolerance, find_model
@@ -70,6 +71,7 @@ def run_model(
         outcome.message,
         "" if finite else moves(model, scene, outcome, parameters.get("collapse")),
         "" if finite else led_far(model, scene, outcome),
+        "" if finite else passes_corners(scene, outcome, associated=model.name == "limit"),
         keeps_strength(model, scene),
         left_out(model, scene, finite),
     ]

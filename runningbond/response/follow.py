@@ -103,9 +103,7 @@ class _Log:
         self.ground, self._run, self.points = ground, ground.run, points
         self._outline, self._block = system.contacts.outline, np.array([rest.block_at(point) for point in points])
         self._size, self._movable = rest.scene.block_sizes[system.owner], ~rest.scene.fixed[system.owner]
-        low, high = rest.scene.blocks.boxes
-        smaller = float(np.median((high - low).min(axis=1)[~rest.scene.fixed]))
-        size = min(rest.scene.block_size, smaller)  # a slender block overturns across its width
+        size = rest.scene.overturning_size
         self._still, self.calm = STILL * size, RISE * rest.gravity * float(ground.inertia[0].sum()) * size
         self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()

@@ -330,6 +330,12 @@ class Scene:
         return np.asarray(np.maximum((high - low).min(axis=1), self.block_size))
 
     @property
+    def overturning_size(self) -> float:
+        """Median of the smaller sides of movable blocks [m], at most `block_size`: slender ones overturn across it."""
+        low, high = self.blocks.boxes
+        return min(self.block_size, float(np.median((high - low).min(axis=1)[~self.fixed])))
+
+    @property
     def lowest_block(self) -> float:
         """Smallest height of a movable block [m]; the beam counts only if nothing else can move."""
         low, high = self.blocks.boxes

@@ -206,6 +206,25 @@ def test_block_on_tilting_ground_topples_or_slides_at_the_exact_angle(
     assert fall < 1.035 * rest
 
 
+@pytest.mark.parametrize("angle", [-10.0, *at_length(10.0)])
+def test_upright_block_alone_topples_on_its_ground_before_it_lands(angle: float) -> None:
+    """At 8.13°; it lands after a descent of less than half its height, and lay at rest on its side as if it stood."""
+    turns = Settlement(box=((-3.0, -3.0), (3.0, 1e-4)), rotation_angle=angle, about=(0.05, 0.0))
+    scene = build_scene(
+        "pillar",
+        [rectangle(0.0, 0.0, 0.1, 0.7)],
+        thickness=0.2,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.8, elasticity=Stiffness(2e10, 1e10)),
+        grounds=[rectangle(-1.0, -0.5, 2.1, 0.5)],
+        load=Load(live=(turns,)),
+    )
+    outcome = far(scene)
+    assert outcome.status == "collapse"
+    rest, fall = fall_interval(outcome) / (400 * outcome.curve[1, 0])
+    assert rest < math.degrees(math.atan(1 / 7)) / 10 < fall < 1.004 * rest
+
+
 @pytest.mark.parametrize("angle", [-6.84, *at_length(-6.7)])
 def test_block_stands_on_ground_that_tilts_by_less_than_its_slope(angle: float) -> None:
     """Below 6.843°; the last of 20 stages shakes it so that it falls, and a fall counts only in a short one."""

@@ -137,6 +137,21 @@ def test_forces_at_the_lower_bound_are_in_the_order_of_the_joints() -> None:
     assert last.points.position[:, 0] == pytest.approx(np.asarray(result.joints["x"]))
 
 
+def test_states_of_pushed_walls_belong_to_the_multipliers_of_their_rows() -> None:
+    """In the curve, the row with the multiplier of a state has the work of the dead load on its motion."""
+    size = {"length": 0.2, "height": 0.8, "block_width": 0.2, "block_height": 0.2, "thickness": 0.2}
+    joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    pier = rb.Wall.running_bond(**size, **joint, density=1800.0)
+    result, scene = pier.run("dem-dynamic", states=True, displacements="finite", tolerance=0.05), pier.scene
+    weight = np.where(scene.fixed, 0.0, 9.81 * scene.mass)
+    work = dict(zip(result.curve["multiplier"], result.curve["work of the dead load [J]"], strict=True))
+    pushed = [state for state in result.states if state.multiplier in work and state.multiplier > 0]
+    assert len(pushed) > 5
+    for state in pushed:
+        done = -float(weight @ state.motion[:, 1])
+        assert done == pytest.approx(work[state.multiplier], rel=1e-3)
+
+
 def test_states_need_the_option_states() -> None:
     with pytest.raises(ValueError, match=r"states=True"):
         WALL.run("limit").states  # noqa: B018 - refused where it is read

@@ -161,6 +161,18 @@ def test_drawing_is_found_independently_of_the_current_folder(tmp_path: Path, mo
     assert same_scene(rb.read("copy.toml").scene, copies[0].scene)
 
 
+def test_copies_are_of_the_drawing_that_the_wall_was_read_from(tmp_path: Path) -> None:
+    """A copy of a wall whose drawing has changed would be another wall; one with another drawing is meant to be."""
+    for name, bricks in (("wall", BRICKS), ("other", BRICKS[:2])):
+        dxf(tmp_path / f"{name}.dxf", closed(bricks))
+    wall = rb.Wall.from_dict(tables(), folder=tmp_path)
+    dxf(tmp_path / "wall.dxf", closed(BRICKS[:2]))
+    for copying in (lambda: wall.with_(), lambda: rb.sweep(wall, {"joint.friction": [0.5, 0.6]}, "limit", jobs=1)):
+        with pytest.raises(SceneError, match="^wall.drawing = 'wall.dxf': has changed since"):
+            copying()
+    assert wall.with_({"wall.drawing": "other.dxf"}).scene.wall.sum() == 2
+
+
 def test_arrays_of_a_scene_are_read_only() -> None:
     """A change in place would alter the wall for the next run."""
     scene = rb.Wall.running_bond(**PANEL).scene
