@@ -125,13 +125,14 @@ class BeamDrive(Lead):
                 # The mean force of a row belongs to the middle of the row.
                 self.note(traverse, middle, self.moved(middle), peaks.mean(peaks.windows))
                 seen.append((middle.motion, self.crushed(middle)))
-                if (k + 1) % STRIDE == 0:
+                if (k + 1) % STRIDE == 0 and k + 1 < n:
                     self.observe(run, middle, traverse.rows[-1].force)
                 if self.falls(state):
                     traverse.verdict = "collapse"
                     break
             at = goal
             self.note(traverse, state, self.moved(state), traverse.rows[-1].force)
+            self.observe(run, state, traverse.rows[-1].force)
             seen.append((state.motion.copy(), self.crushed(state)))
         self.conclude(traverse, peaks, seen)
         return state
