@@ -3,8 +3,10 @@
 If the toe is visibly broken, crushed or split by 0.1 mm, the mode is toe crushing (R/TC), as reports call it. Under a
 beam that is kept at its height a wall cannot rock; its toes are then the ends of its strut, and do not count. The
 beam's point at the actuator's height moves by U. If at least half of U comes from the beam's rotation ω over the height
-H, |ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on average over its length, the
-wall slides there (SL). Else the motion is distributed over the steps of a diagonal (F).
+H, |ω| H ≥ U / 2, the wall rocks (R/TC). A beam that is kept level does not rotate while the wall rocks below it: ω is
+then the median rotation of the wall's blocks, each counted by its area, and H the height of the wall without the beam.
+Else, if one bed joint slips by U / 2 or more on average over its length, the wall slides there (SL). Else the motion is
+distributed over the steps of a diagonal (F).
 """
 
 from collections.abc import Iterable
@@ -56,9 +58,18 @@ def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
         broken = outcome.path[failing(outcome.curve), outcome.path_columns.index(TOE)]
         if broken >= VISIBLE:
             return ROCKING
-    if abs(float(motion[beam, 2])) * height >= HALF * moved:
+    turned = _turned_masonry(scene, motion) if scene.beam.condition == "level" else float(motion[beam, 2]) * height
+    if abs(turned) >= HALF * moved:
         return ROCKING
     return SLIDING if max(bed_slips(scene, motion, outcome.moved)) >= HALF * moved else DIAGONAL
+
+
+def _turned_masonry(scene: Scene, motion: Array) -> float:
+    """Median rotation of the wall's blocks, each counted by its area, times the wall's height without the beam [m]."""
+    masonry = scene.masonry
+    (_, bottom), (_, top) = scene.blocks.extent(masonry)
+    area = scene.blocks.area[masonry]
+    return float(np.quantile(motion[masonry, 2], HALF, weights=area, method="inverted_cdf") * (top - bottom))
 
 
 def bed_slips(scene: Scene, motion: Array, moved: float | None = None) -> list[float]:

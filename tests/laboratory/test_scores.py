@@ -366,12 +366,42 @@ def test_wall_rotating_about_its_toe_rocks(granite: Scene) -> None:
     assert moved(granite, motion) == ROCKING
 
 
+def under_a_level_beam(scene: Scene) -> Scene:
+    assert scene.beam is not None
+    return replace(scene, beam=replace(scene.beam, condition="level"))
+
+
+def test_wall_turning_as_one_block_under_a_level_beam_rocks(granite: Scene) -> None:
+    """The beam moves by ω H without a rotation; once the wall was said to fail on its diagonal."""
+    scene, motion = under_a_level_beam(granite), still(granite)
+    arm = scene.blocks.centroid[scene.masonry] - (1.0, 0.0)
+    motion[scene.masonry] = np.column_stack([arm[:, 1], -arm[:, 0], -np.ones(len(arm))])
+    motion[scene.is_beam] = (1.2, 0.0, 0.0)
+    assert moved(scene, motion) == ROCKING
+    motion[scene.masonry & (scene.blocks.centroid[:, 1] < 0.7)] = 0.0  # more than half of the wall stands still
+    assert moved(scene, motion) != ROCKING
+
+
+def test_slender_pier_rocks_under_a_level_beam() -> None:
+    pier = {
+        "wall": {"block_width": 0.25, "block_height": 0.25, "thickness": 0.175, "length": 0.5, "height": 2.0},
+        "block": {"density": 1800.0},
+        "joint": {"friction": 0.65},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81},
+        "beam": {"height": 0.2, "condition": "level", "force": [0, -5e4], "drive": {"force": [1, 0], "at": 2.0}},
+    }
+    scene = scene_from_dict(pier)
+    assert predicted_mode(scene, limit(scene)) == ROCKING
+
+
 @pytest.mark.parametrize("level", [0.0, 0.45, 1.2])
 def test_wall_cut_along_a_bed_joint_slides(granite: Scene, level: float) -> None:
     motion = still(granite)
     motion[granite.wall & (granite.blocks.centroid[:, 1] > level), 0] = 1.0
     assert moved(granite, motion) == SLIDING
     assert max(bed_slips(granite, motion)) == pytest.approx(1.0)
+    assert moved(under_a_level_beam(granite), motion) == SLIDING
 
 
 def test_wall_with_a_stepped_crack_fails_on_the_diagonal(granite: Scene) -> None:
@@ -379,6 +409,7 @@ def test_wall_with_a_stepped_crack_fails_on_the_diagonal(granite: Scene) -> None
     x, y = granite.blocks.centroid.T
     motion[granite.wall & (y > 1.2 - 1.1 * x), 0] = 1.0
     assert moved(granite, motion) == DIAGONAL
+    assert moved(under_a_level_beam(granite), motion) == DIAGONAL
 
 
 def test_wall_at_rest_has_no_mode(granite: Scene) -> None:
