@@ -4,6 +4,7 @@ import numpy as np
 
 from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
+from .rig import load_in_name
 
 LOWER = 0.02
 """Part of a wall's height by which its actuator may be lower because sizes are rounded."""
@@ -14,7 +15,8 @@ SAME_PEAK = 0.05
 
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    return [*_unknown_modes(wall), *_missing_cycles(wall), *_low_force(wall), *_offset(wall), *_other_peak(wall)]
+    kinds = _unknown_modes, _missing_cycles, _load_of_name, _low_force, _offset, _other_peak
+    return [note for kind in kinds for note in kind(wall)]
 
 
 def _unknown_modes(wall: MeasuredWall) -> list[str]:
@@ -31,6 +33,14 @@ def lacks_cycles(wall: MeasuredWall) -> bool:
 def _missing_cycles(wall: MeasuredWall) -> list[str]:
     what = f"the test was cyclic, but there is no {wall.name}.csv with its cycles; models push the wall to one side"
     return [what] if lacks_cycles(wall) else []
+
+
+def _load_of_name(wall: MeasuredWall) -> list[str]:
+    """A name whose number is the only load: it may as well count walls."""
+    named, loads = load_in_name(wall.name), [wall.row.optional(column) for column in ("Ntot", "σ0,pc")]
+    if wall.scene_file is not None or not named or loads != [None, None]:
+        return []
+    return [f"no Ntot or σ0,pc: the {named / 1e3:g} in the name is taken as {named / 1e3:g} kN"]
 
 
 def _low_force(wall: MeasuredWall) -> list[str]:

@@ -224,13 +224,19 @@ def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
     return courses
 
 
+def load_in_name(name: str) -> float:
+    """The load [N] which is part of a wall's name, in kN; 0 if there is none."""
+    found = LOAD_IN_NAME.match(name)
+    return 1e3 * float(found[1]) if found else 0.0
+
+
 def vertical_load(wall: MeasuredWall) -> float:
     """The load on the beam [N]: Ntot less the weight of the wall, else σ0 L t, else the number in the wall's name.
 
     If the number in the name is nearly equal to this load, it is used instead: the wall was tested under it.
     """
-    row, name = wall.row, LOAD_IN_NAME.match(wall.name)
-    named, stress = 1e3 * float(name[1]) if name else 0.0, row.optional("σ0,pc")
+    row, named = wall.row, load_in_name(wall.name)
+    stress = row.optional("σ0,pc")
     if row.optional("Ntot") is None and (named or stress):
         load = named if stress is None else stress * row.number("L") * row.number("t")
     else:

@@ -728,6 +728,15 @@ def test_number_in_a_name_is_a_load_if_the_table_agrees(tmp_path: Path, name: st
     assert vertical_load(one(tmp_path, row)) == pytest.approx(load, rel=1e-9)
 
 
+def test_load_that_only_the_name_has_is_noted(tmp_path: Path) -> None:
+    """The third wall of a series was once pressed by 3 kN without a word."""
+    row = GRANITE.replace("WS.175", "GC-3")
+    assert notes_on(one(tmp_path / "table", row)) == []
+    bare = one(tmp_path / "name", row.replace("179.8", ""))
+    assert vertical_load(bare) == 3e3
+    assert notes_on(bare) == ["no Ntot or σ0,pc: the 3 in the name is taken as 3 kN"]
+
+
 @pytest.mark.parametrize("content", [b"none", b"\x89PNG\r\n\x1a\nhalf", b""])
 def test_invalid_crack_picture_is_refused(content: bytes, tmp_path: Path) -> None:
     """Only the first bytes were once checked; a damaged picture caused a traceback after all predictions."""
