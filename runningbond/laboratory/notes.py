@@ -4,10 +4,14 @@ import numpy as np
 
 from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
-from .rig import load_in_name
+from .rig import load_in_name, vertical_load
+from .stones import find_stone
 
 LOWER = 0.02
 """Part of a wall's height by which its actuator may be lower because sizes are rounded."""
+
+SAME_STONE = 0.05
+"""Relative difference up to which a number in a wall's row is that of its stone."""
 
 SAME_PEAK = 0.05
 """Relative difference up to which the largest forces of a wall's record and of its table are the same."""
@@ -15,7 +19,7 @@ SAME_PEAK = 0.05
 
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    kinds = _unknown_modes, _missing_cycles, _load_of_name, _low_force, _offset, _other_peak
+    kinds = _unknown_modes, _missing_cycles, _load_of_name, _other_stone, _low_force, _offset, _other_peak
     return [note for kind in kinds for note in kind(wall)]
 
 
@@ -41,6 +45,25 @@ def _load_of_name(wall: MeasuredWall) -> list[str]:
     if wall.scene_file is not None or not named or loads != [None, None]:
         return []
     return [f"no Ntot or σ0,pc: the {named / 1e3:g} in the name is taken as {named / 1e3:g} kN"]
+
+
+def _other_stone(wall: MeasuredWall) -> list[str]:
+    """Numbers of another stone than that of the campaign with its name, from which models take their own."""
+    if wall.scene_file is not None:
+        return []
+    row = wall.row
+    stone = find_stone(row.key("Stone"), row.text("stone"))
+    used = {"fc": stone.prism, "fc,b": stone.block, "Eb": stone.young}
+    if row.stress("Epc") is not None:
+        used["Epc"] = stone.modulus(vertical_load(wall) / (row.number("L") * row.number("t")))
+    told = [(column, value, own) for column, own in used.items() if (value := row.stress(column)) is not None]
+    unlike = ", ".join(
+        f"{column} = {value / 1e6:.5g} MPa (for {own / 1e6:.5g})"
+        for column, value, own in told
+        if abs(value - own) > SAME_STONE * own
+    )
+    what = f"not read: {unlike}; models take the numbers of {row.text('stone').casefold()} in brackets"
+    return [f"{what}, and a wall of other stone needs a {wall.name}.toml"] if unlike else []
 
 
 def _low_force(wall: MeasuredWall) -> list[str]:

@@ -65,6 +65,11 @@ class Stone:
         """Shear strength of the intact block [Pa]: √(f_c f_t) / 2, from the Coulomb line through both strengths."""
         return math.sqrt(self.block * self.tensile) / 2
 
+    def modulus(self, pressure: float) -> float:
+        """Young's modulus of walls [Pa] under a pressure [Pa], interpolated; beyond the measured ones the nearest."""
+        pressures, moduli = np.array(sorted(self.moduli.items())).T
+        return float(np.interp(pressure, pressures, moduli))
+
     def stiffness(self, block_height: float, *, deformable: bool) -> tuple[float, float]:
         """Normal stiffness of a bed joint at zero pressure [Pa/m], and its growth with pressure [1/m].
 

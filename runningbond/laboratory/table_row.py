@@ -98,6 +98,16 @@ class TableRow:
             raise SceneError(self.key(column), "is missing; it must be a number above 0, or a scene NAME.toml be there")
         return value
 
+    def stress(self, column: str) -> float | None:
+        """A stress [Pa] that no model reads, by default in MPa; None if the entry is empty, or not such a number."""
+        text, unit = self.entries.get(column.casefold(), ("", ""))
+        size = STRESSES.get(ALIKE.get(unit.strip(), unit.strip()) or "MPa")
+        try:
+            value = float(text.translate(MINUS))
+        except ValueError:
+            return None
+        return value * size if size is not None and math.isfinite(value) else None
+
     def optional(self, column: str, *, magnitude: bool = False, may_be_zero: bool = False) -> float | None:
         """An entry as a number above 0, or the `magnitude` of any, in SI units; None if it is empty, or a valid 0."""
         text, unit = self.entries.get(column.casefold(), ("", ""))

@@ -737,6 +737,29 @@ def test_load_that_only_the_name_has_is_noted(tmp_path: Path) -> None:
     assert notes_on(bare) == ["no Ntot or σ0,pc: the 3 in the name is taken as 3 kN"]
 
 
+@pytest.mark.parametrize(
+    ("column", "same", "other", "said"),
+    [
+        ("fc [MPa]", "72", "12", "fc = 12 MPa (for 73)"),
+        ("fc [N/mm²]", "-", "12", "fc = 12 MPa (for 73)"),
+        ("Epc [MPa]", "4100", "900", "Epc = 900 MPa (for 4068)"),
+        ("Epc", "4100", "4.9e3", "Epc = 4900 MPa (for 4068)"),
+        ('"fc,b (MPa)"', "69.2", "40", "fc,b = 40 MPa (for 69)"),
+        ("Eb [GPa]", "20.2", "9", "Eb = 9000 MPa (for 20200)"),
+        ("Eb [MPa]", "high", "9e3", "Eb = 9000 MPa (for 20200)"),
+    ],
+)
+def test_numbers_of_another_stone_are_noted(column: str, same: str, other: str, said: str, tmp_path: Path) -> None:
+    """Soft and weak granite was once predicted with the numbers of the campaign's granite without a word."""
+    for folder, cell in (("same", same), ("other", other)):
+        (wall,) = read_folder(with_column(tmp_path / folder, column, cell))
+        what = f"not read: {said}; models take the numbers of granite in brackets"
+        told = [f"{what}, and a wall of other stone needs a WS.175.toml"] if folder == "other" else []
+        assert notes_on(wall) == told
+    write_toml(_tables(wall, ALL), tmp_path / "other" / "WS.175.toml")
+    assert notes_on(read_folder(tmp_path / "other")[0]) == []
+
+
 @pytest.mark.parametrize("content", [b"none", b"\x89PNG\r\n\x1a\nhalf", b""])
 def test_invalid_crack_picture_is_refused(content: bytes, tmp_path: Path) -> None:
     """Only the first bytes were once checked; a damaged picture caused a traceback after all predictions."""
