@@ -15,6 +15,7 @@ from runningbond.scene.ranges import suggestion
 
 from .formulas import formula
 from .rig import Features
+from .scores import cycle_ends
 
 PUSHED = Features(driven=False)
 
@@ -33,12 +34,12 @@ class Rung:
         """Its name in tables."""
         return self.model.name
 
-    def leaves_out(self, scene: Scene, *, is_cyclic: bool) -> str:
+    def leaves_out(self, scene: Scene) -> str:
         """Why a wall is not predicted with this rung; empty if it is."""
         if self.base != "fem":
             return ""
-        if is_cyclic:
-            return "left out: cyclic tests take too long with it"
+        if len(cycle_ends(scene.drive_path)) > 1:
+            return "left out: walls that are pushed to and fro take too long with it"
         rocks = scene.beam is not None and scene.beam.condition == "free"
         return (
             "left out: a wall that rocks goes beyond small displacements" if rocks and not self.model.is_finite else ""

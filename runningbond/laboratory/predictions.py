@@ -20,7 +20,7 @@ from .ladder import Rung
 from .measured import MeasuredWall
 from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
 from .rig import scene_of
-from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, marks_of, ratio
+from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, goes_to_both_sides, marks_of, ratio
 
 ARRIVED = 0.99
 """Share of the path's length above which a wall has been followed to the end of the path."""
@@ -70,13 +70,18 @@ class Prediction:
         if self.outcome is None or drive is None or not drive.path:
             return np.zeros((0, 2))
         # Outcomes are positive in the direction of the first push, and so are one-sided tests, whichever side it was.
-        is_to_both = any(goal < 0 for goal in cycle_ends(self.wall.path))
-        return np.asarray(self.outcome.curve * (np.sign(drive.force[0]) if is_to_both else 1.0))
+        return np.asarray(self.outcome.curve * (np.sign(drive.force[0]) if self._is_to_both_sides else 1.0))
+
+    @property
+    def _is_to_both_sides(self) -> bool:
+        """Whether both the test and the prediction go to both sides."""
+        return goes_to_both_sides(self.wall.path) and goes_to_both_sides(self.scene.drive_path)
 
     @cached_property
     def marks(self) -> Marks | None:
         """Values read from its curve."""
-        return marks_of(self.curve, cyclic=self.wall.is_cyclic, side=self.wall.side) if self.is_answer else None
+        side = self.wall.side if self._is_to_both_sides else 1.0
+        return marks_of(self.curve, cyclic=self.wall.is_cyclic, side=side) if self.is_answer else None
 
     @property
     def strength(self) -> float | None:
@@ -187,10 +192,7 @@ def predict(
     """
     # The most expensive first; otherwise they would end up on a single core at the end.
     cells = [(wall, rung) for rung in reversed(rungs) for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
-    reasons = {
-        (wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name], is_cyclic=wall.is_cyclic)
-        for wall, rung in cells
-    }
+    reasons = {(wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name]) for wall, rung in cells}
     models = {cell: rung.model for wall, rung in cells if not reasons[cell := (wall.name, rung.name)]}
     computed = _computed(models, scenes)
     tasks = [Task(cell[0], scenes[cell], models[cell], TOLERANCE) for cell in models if computed[cell] == cell]

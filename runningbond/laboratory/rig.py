@@ -73,6 +73,11 @@ def scene_of(wall: MeasuredWall, features: Features) -> Scene:
     return scene if features.parts == 1 else _stiffened(scene, features.parts)
 
 
+def driven_path(wall: MeasuredWall) -> tuple[float, ...]:
+    """Displacements [m] along which models drive a wall's beam; empty if its own scene has a force instead."""
+    return scene_of(wall, Features()).drive_path
+
+
 def _read(wall: MeasuredWall, path: Path, features: Features) -> Scene:
     """The scene of a wall's own file: with inner joints if it splits, along its path or pushed by a force of 1 N."""
     tables = read_description(path)

@@ -237,6 +237,11 @@ def cycle_ends(path: tuple[float, ...]) -> tuple[float, ...]:
     )
 
 
+def goes_to_both_sides(path: tuple[float, ...]) -> bool:
+    """Whether a path pushes a wall to both sides."""
+    return len({goal > 0 for goal in cycle_ends(path)}) > 1
+
+
 def cycle_peaks(curve: Array, path: tuple[float, ...]) -> list[float]:
     """Force [N] of largest magnitude on the way to each displacement of a path, as far as a curve follows the path."""
     known = curve[~np.isnan(curve).any(axis=1)]

@@ -342,6 +342,7 @@ def test_cyclic_wall_without_a_record_is_said_to_be_pushed_to_one_side(
     row = GRANITE.replace("Monotonic", "Cyclic")
     folder, out = write_folder(tmp_path / "walls", row, row.replace("WS.175", "WS2.175")), tmp_path / "out"
     (folder / "WS.175.csv").unlink()
+    (folder / "WS2.175.csv").write_text("displacement_mm,force_kN\n0,0\n10,61\n-10,-61\n")
     assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking"]) == 0
     notes = [line for line in capsys.readouterr().err.splitlines() if line.startswith("note: WS")]
     said = "the test was cyclic, but there is no WS.175.csv with its cycles; models push the wall to one side"
@@ -349,6 +350,26 @@ def test_cyclic_wall_without_a_record_is_said_to_be_pushed_to_one_side(
     page = (out / "laboratory.md").read_text()
     assert f"Note: {said}." in page
     assert (page.count("pushed to one side;"), page.count("pushed to and fro;")) == (1, 1)
+
+
+@pytest.mark.parametrize("first", [1, -1])
+@pytest.mark.parametrize("side", [1, -1])
+def test_scene_of_a_cyclic_test_may_push_to_one_side(side: int, first: int, tmp_path: Path) -> None:
+    """It was called pushed to and fro, `fem` was refused, and a push to the side of the second half cycle not read."""
+    curve = f"displacement_mm,force_kN\n0,0\n{2 * first},{4 * first}\n{-2 * first},{-4 * first}\n0,0\n"
+    folder, out = write_folder(tmp_path / "walls", "pier,Cyclic,,,,,,,,,,,,R", curve=curve), tmp_path / "out"
+    write_toml(leaning(side), folder / "pier.toml")
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking"]) == 0
+    page = (out / "laboratory.md").read_text()
+    said = (
+        "the test was cyclic, but pier.toml pushes the wall to one side; only the strength of that side is comparable"
+    )
+    assert f"Note: {said}." in page
+    assert "pushed to one side;" in page
+    (wall,), rung = read_folder(folder), LADDER["rigid"]
+    assert LADDER["fem-splitting"].leaves_out(scene := scene_of(wall, rung.features)) == ""
+    pushed = Outcome("", "", "undecided", curve=np.array([(0.0, 0.0), (0.01, 4.4e3), (0.02, 4e3)]))
+    assert Prediction(wall, rung, scene, pushed).error == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize(("model", "crushes"), [("limit", False), ("limit-crushing", True)])
