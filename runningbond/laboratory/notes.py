@@ -20,8 +20,28 @@ SAME_PEAK = 0.05
 
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
-    kinds = _unknown_modes, _missing_cycles, _load_of_name, _other_stone, _low_force, _offset, _other_peak
+    kinds = (
+        _misspelt,
+        _nothing_measured,
+        _unknown_modes,
+        _missing_cycles,
+        _load_of_name,
+        _other_stone,
+        _low_force,
+        _offset,
+        _other_peak,
+    )
     return [note for kind in kinds for note in kind(wall)]
+
+
+def _misspelt(wall: MeasuredWall) -> list[str]:
+    unread = wall.row.misspelt()
+    return [f'column "{head}" is not read (did you mean "{column}"?)' for head, column in unread]
+
+
+def _nothing_measured(wall: MeasuredWall) -> list[str]:
+    what = f"neither Vmax,+ nor a curve {wall.name}.csv: its strength is predicted, but not scored"
+    return [] if wall.peaks or len(wall.curve) else [what]
 
 
 def _unknown_modes(wall: MeasuredWall) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runningbond.scene import SceneError
+from runningbond.scene.ranges import nearest
 
 LENGTHS, FORCES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"N": 1.0, "kN": 1e3}
 STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm²": 1e6}
@@ -26,6 +27,15 @@ USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "σ0,pc": "MPa"}
 WORDS = (NAME, "cyclic / monotonic", "joints", "stone", "from test report: failure type")
 """Columns that are read as words."""
 
+FAILURE = "From test report: Failure type"
+NUMBERS = ("H", "L", "t", "H0", "hb", "lb", "Ntot", "Vmax,+", "Vmax,-", "σ0,pc")
+AS_WRITTEN = (*NUMBERS, "Reference", "Cyclic / Monotonic", "Joints", "Stone", FAILURE)
+"""Columns that are read, as tables write them."""
+
+OTHER_NAMES = {"failure type": FAILURE, "failure mode": FAILURE, "n": "Ntot"}
+OTHER_NAMES |= dict.fromkeys(("σ0", "sigma0", "sigma_0", "sigma0,pc"), "σ0,pc")
+"""Columns that may be meant by names that are not similar to theirs."""
+
 NOTHING = ("", "-", "−", "–", "—", "nan", "na", "n/a", "#n/a", "#nv")
 """Entries that count as empty, in lower case."""
 
@@ -37,6 +47,23 @@ DRY = re.compile(r"dry([ -]?(joint(s|ed)?|stack(ed)?|stone|laid|masonry|\(no mor
 
 MINUS = {ord(sign): "-" for sign in "−–"}
 """Signs that count as the minus of a number."""
+
+
+def meant_by(head: str) -> str:
+    """The column that an unread one may be meant as, by name and unit; empty if there is none, or if it is read."""
+    name, unit = _name_and_unit(head)
+    if name.casefold() in map(str.casefold, (NAME, *AS_WRITTEN)):
+        return ""
+    meant = OTHER_NAMES.get(name.casefold()) or nearest(name, AS_WRITTEN)
+    units = units_of(meant) if meant.casefold() in USUAL else {}
+    return meant if not unit or ALIKE.get(unit.strip(), unit.strip()) in units else ""
+
+
+def _name_and_unit(head: str) -> tuple[str, str]:
+    """A column's name and its unit, which is empty if there is none."""
+    parts = HEAD.match(head.strip().lstrip("\ufeff"))
+    assert parts is not None  # it matches any text
+    return parts[1], parts[2] or parts[3] or ""
 
 
 def units_of(column: str) -> dict[str, float]:
@@ -51,21 +78,21 @@ class TableRow:
     path: Path
     line: int
     entries: Mapping[str, tuple[str, str]]  # the entry, and its unit
+    heads: tuple[str, ...] = ()  # as written
 
     @classmethod
     def read(cls, path: Path, line: int, heads: list[str], cells: list[str]) -> "TableRow":
         """Make a row from cells; there may be fewer cells than heads, but not more."""
         entries: dict[str, tuple[str, str]] = {}
-        row = cls(path, line, entries)
+        row = cls(path, line, entries, tuple(heads))
         for head, cell in zip(heads, cells, strict=False):
-            parts = HEAD.match(head.strip().lstrip("\ufeff"))
-            assert parts is not None  # it matches any text
-            name = parts[1].casefold()
-            entry = (cell.strip(), parts[2] or parts[3] or USUAL.get(name, ""))
+            written, unit = _name_and_unit(head)
+            name = written.casefold()
+            entry = (cell.strip(), unit or USUAL.get(name, ""))
             before = entries.get(name, ("", ""))
             if (name in USUAL or name in WORDS) and entry[0] and before[0] and entry != before:
                 what = f"is in another column as well, as {' '.join(before).strip()}; leave one of them empty"
-                raise SceneError(row.key(parts[1]), what, " ".join(entry).strip())
+                raise SceneError(row.key(written), what, " ".join(entry).strip())
             entries[name] = entry if entry[0] or not before[0] else before
         if any(cell.strip() for cell in cells[len(heads) :]):
             raise SceneError(row.place, f"must have {len(heads)} entries, as its heads; has {len(cells)}")
@@ -90,6 +117,18 @@ class TableRow:
     def text(self, column: str) -> str:
         """An entry as written; empty if there is none."""
         return self.entries.get(column.casefold(), ("", ""))[0]
+
+    def misspelt(self) -> list[tuple[str, str]]:
+        """Heads with an entry that are not read, each with the column it may be meant as, which has no entry."""
+        meant = [(head.strip(), meant_by(head)) for head in self.heads]
+        return [
+            (head, column)
+            for head, column in meant
+            if column and self._has(_name_and_unit(head)[0]) and not self._has(column)
+        ]
+
+    def _has(self, column: str) -> bool:
+        return self.text(column).casefold() not in NOTHING
 
     def number(self, column: str) -> float:
         """An entry as a number above 0, in SI units."""

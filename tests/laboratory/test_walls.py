@@ -1,5 +1,6 @@
 """Table rows become scenes: facts of the campaigns, and a one-line error for invalid input."""
 
+import csv
 import itertools
 import re
 import tomllib
@@ -758,6 +759,39 @@ def test_numbers_of_another_stone_are_noted(column: str, same: str, other: str, 
         assert notes_on(wall) == told
     write_toml(_tables(wall, ALL), tmp_path / "other" / "WS.175.toml")
     assert notes_on(read_folder(tmp_path / "other")[0]) == []
+
+
+@pytest.mark.parametrize(
+    ("head", "unread", "cell", "meant"),
+    [
+        ("From test report: Failure type", "Failure type", "R", "From test report: Failure type"),
+        ("Vmax,+ [kN]", "Vmax+ [kN]", "61", "Vmax,+"),
+        ("Vmax,+ [kN]", "Vmax", "61", "Vmax,+"),
+        ("Ntot [kN]", "N [kN]", "179.8", "Ntot"),
+        ("Ntot [kN]", "sigma0 [MPa]", "0.875", "σ0,pc"),
+        ("Ntot [kN]", "N", "-", ""),
+        ("Vmax,+ [kN]", "dmax,+ [%]", "2.1", ""),
+        ("Vmax,- [kN]", "Vmax [kN]", "61", ""),  # the other one has its entry
+        ("Vmax,+ [kN]", "Remark", "none", ""),
+    ],
+)
+def test_misspelt_columns_are_noted(head: str, unread: str, cell: str, meant: str, tmp_path: Path) -> None:
+    """They were once ignored without a word, and the wall had no measured strength, or the load of its name."""
+    row = next(csv.DictReader(f"{HEADS}\n{GRANITE}\n".splitlines()))
+    row |= {head: "", unread: cell}
+    with (tmp_path / "tests.csv").open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([row.keys(), row.values()])
+    (tmp_path / "WS.175.csv").write_text(CURVE)
+    told = [note for note in notes_on(read_folder(tmp_path)[0]) if note.startswith("column ")]
+    assert told == ([f'column "{unread}" is not read (did you mean "{meant}"?)'] if meant else [])
+
+
+def test_wall_of_which_nothing_was_measured_is_noted(tmp_path: Path) -> None:
+    folder = write_folder(tmp_path, GRANITE.replace(",61,", ",,"))
+    assert notes_on(read_folder(folder)[0]) == []
+    (folder / "WS.175.csv").unlink()
+    said = "neither Vmax,+ nor a curve WS.175.csv: its strength is predicted, but not scored"
+    assert notes_on(read_folder(folder)[0]) == [said]
 
 
 @pytest.mark.parametrize("content", [b"none", b"\x89PNG\r\n\x1a\nhalf", b""])
