@@ -13,6 +13,7 @@ from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
 from runningbond.pictures.charts import bare
 from runningbond.pictures.flat import draw_mechanism
+from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.scene import Array
 
 from .ladder import LADDER
@@ -61,8 +62,16 @@ def _goes_the_other_way(prediction: Prediction) -> bool:
 
 
 def drawn_by(predictions: Sequence[Prediction]) -> Prediction | None:
-    """The prediction whose mechanism is drawn for a wall; None if there is none."""
-    return min((each for each in predictions if each.mode and not each.rung.is_by_hand), key=_distance, default=None)
+    """The prediction whose mechanism is drawn for a wall: the nearest of those that have one; None if there is none."""
+    return next((each for each in sorted(predictions, key=_distance) if _can_be_drawn(each)), None)
+
+
+def _can_be_drawn(prediction: Prediction) -> bool:
+    """Whether a prediction has a mechanism, and its loads drive it; others are drawn as the undeformed wall."""
+    outcome = prediction.outcome
+    if outcome is None or not prediction.mode or prediction.rung.is_by_hand:
+        return False
+    return mechanism_shape(prediction.scene, outcome) is not None
 
 
 def _distance(prediction: Prediction) -> tuple[bool, float]:

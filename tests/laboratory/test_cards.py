@@ -12,10 +12,12 @@ from matplotlib.image import imsave
 from matplotlib.text import Annotation
 from PIL import Image
 
-from runningbond.laboratory.cards import card, error_over_cost
+from runningbond.laboratory.cards import card, drawn_by, error_over_cost
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
-from runningbond.laboratory.predictions import predict, scenes_of
+from runningbond.laboratory.predictions import Prediction, predict, scenes_of
+from runningbond.laboratory.rig import scene_of
+from runningbond.results import Outcome
 from tests.laboratory.folders import CURVE, GRANITE, write_folder
 
 PIXEL = 1.0
@@ -35,6 +37,23 @@ def test_card_draws_the_model_nearest_to_the_test_and_clips_no_text(tmp_path: Pa
         box = each.get_window_extent()
         assert figure.bbox.y0 <= box.y0
         assert box.y1 <= figure.bbox.y1 + PIXEL
+
+
+def test_mechanism_against_its_loads_is_not_drawn(tmp_path: Path) -> None:
+    """The panel of the nearest model was once the undeformed wall, called the motion of failure."""
+    walls = read_folder(write_folder(tmp_path / "walls", GRANITE))
+    pushed, driven = LADDER["limit"], LADDER["rigid"]
+    (sound,), _ = predict(walls, [pushed], scenes_of(walls, [pushed]), tmp_path, jobs=1)
+    assert sound.outcome is not None
+    curve = np.array([(0.0, 0.0), (0.01, 61e3)])
+    motion, load = sound.outcome.motion, sound.outcome.multiplier
+    followed = Outcome("", "", "collapse", load, motion=motion, curve=curve)
+    nearest = Prediction(walls[0], driven, scene_of(walls[0], driven.features), followed)
+    assert drawn_by([sound, nearest]) is nearest
+    backward = replace(nearest, outcome=replace(followed, motion=-motion))
+    assert drawn_by([backward, sound]) is sound
+    assert drawn_by([backward]) is None
+    assert len(card([backward]).axes) == 1
 
 
 @pytest.mark.parametrize("side", [1, -1])
