@@ -43,7 +43,7 @@ def card(predictions: Sequence[Prediction]) -> Figure:
     axes = list(figure.subplots(1, panels, width_ratios=[1.6] + [1.0] * (panels - 1), squeeze=False)[0])
     _curves(axes.pop(0), predictions)
     if drawn is not None and drawn.outcome is not None:
-        draw_mechanism(axes.pop(0), drawn.scene, drawn.outcome)
+        draw_mechanism(axes.pop(0), drawn.scene, drawn.outcome, _scored(drawn))
     if wall.cracks is not None:
         mirrored = _goes_the_other_way(predictions[0])
         # Pictures without colours are shown in grey, not in the colours of a chart.
@@ -52,6 +52,12 @@ def card(predictions: Sequence[Prediction]) -> Figure:
         axes[0].axis("off")
     figure.draw_without_rendering()  # first layout: the one of the drawing depends on the height of the wall's axes
     return figure
+
+
+def _scored(prediction: Prediction) -> str:
+    """Strength and status of a prediction as in the table of scores; those of its outcome may be others."""
+    strength = "" if prediction.strength is None else f"P = {prediction.strength / 1e3:.1f} kN, "
+    return f"{prediction.rung.name}: {strength}{prediction.status}"
 
 
 def _goes_the_other_way(prediction: Prediction) -> bool:

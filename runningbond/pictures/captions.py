@@ -162,12 +162,16 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     return f"{name} = {signed(number(outcome.multiplier))}{unit}", bracket
 
 
-def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], shape: DeformedShape | None) -> Caption:
+def mechanism_caption(
+    scene: Scene, outcome: Outcome, key: Sequence[Any], shape: DeformedShape | None, load: str = ""
+) -> Caption:
     """Caption with title, load, bracket, drawn size of the mechanism, and a warning if something is wrong with it.
 
-    `shape` is that of `mechanism_shape`, or None if the undeformed wall is drawn.
+    `shape` is that of `mechanism_shape`, or None if the undeformed wall is drawn. `load` replaces the line of model,
+    load and bracket.
     """
-    title, load = wall_title(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
+    title = wall_title(outcome.scene)
+    load = load or f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
     warning = mechanism_warning(scene, outcome)
     if shape is None:
         return Caption(title, load, [warning or "no mechanism"], [])

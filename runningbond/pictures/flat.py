@@ -57,12 +57,13 @@ def draw_wall(axes: "Axes", scene: Scene, *, numbers: bool = False) -> None:
     _draw(axes, undeformed_shape(scene), wall_caption(scene), numbers=numbers)
 
 
-def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
+def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome, load: str = "") -> None:
     """Draw an outcome's mechanism over the undeformed wall, with joints coloured by state and hinges as circles.
 
-    If there is no mechanism, or the loads do not drive it, the undeformed wall is drawn with a note below.
+    If there is no mechanism, or the loads do not drive it, the undeformed wall is drawn with a note below. `load`
+    replaces the line of model, load and bracket above it.
     """
-    shape, caption, thrust = _mechanism(scene, outcome)
+    shape, caption, thrust = _mechanism(scene, outcome, load)
     _draw(axes, shape, caption, thrust=thrust)
 
 
@@ -136,7 +137,7 @@ def paint_blocks(axes: "Axes", shape: DeformedShape, width: float) -> None:
     _draw_blocks(axes, shape, block_colours(shape.scene), 0.5 * width)
 
 
-def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, Array]:
+def _mechanism(scene: Scene, outcome: Outcome, load: str = "") -> tuple[DeformedShape, Caption, Array]:
     """Shape and caption of an outcome's mechanism, and its resultants if blocks are drawn large enough."""
     from matplotlib.lines import Line2D
 
@@ -149,7 +150,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=label))
     else:
         lines = lines[:0]
-    return shape, mechanism_caption(scene, outcome, key, mechanism), lines
+    return shape, mechanism_caption(scene, outcome, key, mechanism, load), lines
 
 
 def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:

@@ -4,6 +4,7 @@ import io
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ from matplotlib.text import Annotation
 from PIL import Image
 
 from runningbond.laboratory.cards import card, drawn_by, error_over_cost
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory.folder import SHIPPED, read_folder, shipped_walls
 from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.page import score_sheet
 from runningbond.laboratory.predictions import Prediction, predict, scenes_of
 from runningbond.laboratory.rig import scene_of
 from runningbond.results import Outcome
@@ -54,6 +56,23 @@ def test_mechanism_against_its_loads_is_not_drawn(tmp_path: Path) -> None:
     assert drawn_by([backward, sound]) is sound
     assert drawn_by([backward]) is None
     assert len(card([backward]).axes) == 1
+
+
+@pytest.mark.parametrize("status", ["collapse", "undecided"])
+def test_mechanism_has_the_strength_and_status_of_the_table(status: Literal["collapse", "undecided"]) -> None:
+    """A wall that was followed to the end of its path was once called undecided, with a bound for its strength."""
+    wall, rung = shipped_walls()["J4D"], LADDER["rigid"]
+    scene = scene_of(wall, rung.features)
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.wall & (scene.blocks.centroid[:, 1] > 0.5), 0] = 1.0
+    load = 6e4 if status == "collapse" else None
+    curve = np.array([(0.0, 0.0), (0.004, 64.14e3)])
+    outcome = Outcome("J4D", "rigid", status, load, lower=6e4, motion=motion, curve=curve)
+    (row,) = score_sheet([one := Prediction(wall, rung, scene, outcome)]).rows
+    assert row[2:4] == [one.status, "64.1"]
+    told = [each.get_text() for each in card([one]).findobj(Annotation)]
+    assert f"rigid: P = 64.1 kN, {one.status}" in told
+    assert (one.status == "followed") == (status == "undecided")
 
 
 @pytest.mark.parametrize("side", [1, -1])
