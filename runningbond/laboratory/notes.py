@@ -28,6 +28,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _load_of_name,
         _other_stone,
         _low_force,
+        _turned,
         _offset,
         _other_peak,
     )
@@ -98,6 +99,11 @@ def _low_force(wall: MeasuredWall) -> list[str]:
         return []
     told = f"H0 = {1e3 * at:.4g} mm is below the top of the wall, {1e3 * top:.4g} mm"
     return [f"{told}; models push a free beam at that height, where the wall's moment vanishes"]
+
+
+def _turned(wall: MeasuredWall) -> list[str]:
+    what = "the record goes to the negative side; its signs are reversed in chart and card"
+    return [what] if wall.is_turned else []
 
 
 def _offset(wall: MeasuredWall) -> list[str]:

@@ -219,6 +219,7 @@ def test_wall_pushed_to_the_negative_side_is_mirrored(tmp_path: Path) -> None:
     curve = "displacement_mm,force_kN\n0,0\n-1,-30\n-10,-61\n"
     wall = read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))[0]
     assert wall.curve.tolist() == [[0, 0], [1e-3, 30e3], [0.01, 61e3]]
+    assert notes_on(wall) == ["the record goes to the negative side; its signs are reversed in chart and card"]
     assert (wall.path, wall.peaks) == ((0.01,), (61e3,))
 
 
