@@ -104,8 +104,8 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
                 axes.axhline(each.strength / 1e3, lw=0.9, **look)
             continue
         x, y = each.curve.T
-        axes.plot(1e3 * x, y / 1e3, lw=0.6 if wall.is_cyclic else 1.2, **look)
-        if wall.is_cyclic:
+        axes.plot(1e3 * x, y / 1e3, lw=0.6 if each.is_to_and_fro else 1.2, **look)
+        if wall.is_cyclic and each.is_to_and_fro:
             _envelope(axes, each.curve, ends, each.rung.model.colour)
     if wall.is_cyclic and len(wall.curve):
         _envelope(axes, wall.curve, ends, MEASURED, "measured, peaks of its cycles")

@@ -11,6 +11,9 @@ from .stones import find_stone
 LOWER = 0.02
 """Part of a wall's height by which its actuator may be lower because sizes are rounded."""
 
+OF_A_SCENE = ("H", "L", "t", "hb", "lb", "Ntot", "σ0,pc", "Stone")
+"""Columns that are not read for a wall with a scene of its own."""
+
 SAME_STONE = 0.05
 """Relative difference up to which a number in a wall's row is that of its stone."""
 
@@ -37,7 +40,10 @@ def notes_on(wall: MeasuredWall) -> list[str]:
 
 def _misspelt(wall: MeasuredWall) -> list[str]:
     unread = wall.row.misspelt()
-    return [f'column "{head}" is not read (did you mean "{column}"?)' for head, column in unread]
+    replaced = () if wall.scene_file is None else OF_A_SCENE
+    return [
+        f'column "{head}" is not read (did you mean "{column}"?)' for head, column in unread if column not in replaced
+    ]
 
 
 def _nothing_measured(wall: MeasuredWall) -> list[str]:
@@ -102,7 +108,7 @@ def _low_force(wall: MeasuredWall) -> list[str]:
 
 
 def _turned(wall: MeasuredWall) -> list[str]:
-    what = "the record goes to the negative side; its signs are reversed in chart and card"
+    what = "the record goes to the negative side; its curve is drawn and scored with reversed signs"
     return [what] if wall.is_turned else []
 
 

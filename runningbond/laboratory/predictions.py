@@ -73,6 +73,11 @@ class Prediction:
         return np.asarray(self.outcome.curve * (np.sign(drive.force[0]) if self._is_to_both_sides else 1.0))
 
     @property
+    def is_to_and_fro(self) -> bool:
+        """Whether it has cycles; a scene of its own may push to one side although the test was cyclic."""
+        return len(cycle_ends(self.scene.drive_path)) > 1
+
+    @property
     def _is_to_both_sides(self) -> bool:
         """Whether both the test and the prediction go to both sides."""
         return goes_to_both_sides(self.wall.path) and goes_to_both_sides(self.scene.drive_path)
@@ -152,7 +157,7 @@ class Prediction:
 
     def _cycles(self) -> float | None:
         """Mean ratio of predicted to measured peaks of cycles."""
-        if not self.wall.is_cyclic or not self.marks:
+        if not self.wall.is_cyclic or not self.is_to_and_fro or not self.marks:
             return None
         ends = cycle_ends(self.wall.path)
         pairs = zip(cycle_peaks(self.curve, ends), cycle_peaks(self.wall.curve, ends), strict=False)

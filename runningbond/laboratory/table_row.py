@@ -36,6 +36,9 @@ OTHER_NAMES = {"failure type": FAILURE, "failure mode": FAILURE, "n": "Ntot"}
 OTHER_NAMES |= dict.fromkeys(("σ0", "sigma0", "sigma_0", "sigma0,pc"), "σ0,pc")
 """Columns that may be meant by names that are not similar to theirs."""
 
+LONG = 3
+"""Letters of a column's name from which it may be a misspelt one; shorter names, as No, are similar to too many."""
+
 NOTHING = ("", "-", "−", "–", "—", "nan", "na", "n/a", "#n/a", "#nv")
 """Entries that count as empty, in lower case."""
 
@@ -54,7 +57,8 @@ def meant_by(head: str) -> str:
     name, unit = _name_and_unit(head)
     if name.casefold() in map(str.casefold, (NAME, *AS_WRITTEN)):
         return ""
-    meant = OTHER_NAMES.get(name.casefold()) or nearest(name, AS_WRITTEN)
+    likely = nearest(name, AS_WRITTEN) if len(name) >= LONG else ""
+    meant = OTHER_NAMES.get(name.casefold(), likely)
     units = units_of(meant) if meant.casefold() in USUAL else {}
     return meant if not unit or ALIKE.get(unit.strip(), unit.strip()) in units else ""
 

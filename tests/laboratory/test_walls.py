@@ -219,7 +219,7 @@ def test_wall_pushed_to_the_negative_side_is_mirrored(tmp_path: Path) -> None:
     curve = "displacement_mm,force_kN\n0,0\n-1,-30\n-10,-61\n"
     wall = read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))[0]
     assert wall.curve.tolist() == [[0, 0], [1e-3, 30e3], [0.01, 61e3]]
-    assert notes_on(wall) == ["the record goes to the negative side; its signs are reversed in chart and card"]
+    assert notes_on(wall) == ["the record goes to the negative side; its curve is drawn and scored with reversed signs"]
     assert (wall.path, wall.peaks) == ((0.01,), (61e3,))
 
 
@@ -774,6 +774,7 @@ def test_numbers_of_another_stone_are_noted(column: str, same: str, other: str, 
         ("Vmax,+ [kN]", "dmax,+ [%]", "2.1", ""),
         ("Vmax,- [kN]", "Vmax [kN]", "61", ""),  # the other one has its entry
         ("Vmax,+ [kN]", "Remark", "none", ""),
+        ("Ntot [kN]", "No", "3", ""),  # numbers of walls
     ],
 )
 def test_misspelt_columns_are_noted(head: str, unread: str, cell: str, meant: str, tmp_path: Path) -> None:
@@ -785,6 +786,9 @@ def test_misspelt_columns_are_noted(head: str, unread: str, cell: str, meant: st
     (tmp_path / "WS.175.csv").write_text(CURVE)
     told = [note for note in notes_on(read_folder(tmp_path)[0]) if note.startswith("column ")]
     assert told == ([f'column "{unread}" is not read (did you mean "{meant}"?)'] if meant else [])
+    write_toml(_tables(one(tmp_path / "other"), ALL), tmp_path / "WS.175.toml")
+    told = [note for note in notes_on(read_folder(tmp_path)[0]) if note.startswith("column ")]
+    assert len(told) == (meant.startswith(("Vmax", "From")))  # its scene has the loads
 
 
 def test_wall_of_which_nothing_was_measured_is_noted(tmp_path: Path) -> None:
