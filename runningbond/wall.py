@@ -256,10 +256,14 @@ class Wall:
                 raise SceneError(name, f'is within a table; give it as {{"{full_name}": {abbreviated(value)}}}', value)
             _check_has_its_table(name, value)
         copy = Wall(merge_changes(self._description, [*nested_changes, tables]), self.folder)
-        for key, file in self._files().items():
-            if copy._files().get(key) == file and copy._digests[key] != self._digests[key]:
-                raise SceneError(key, "has changed since the wall was read from it; read the wall again", file.name)
+        self._check_unchanged({key: file for key, file in self._files().items() if copy._files().get(key) == file})
         return copy
+
+    def _check_unchanged(self, files: dict[str, Path]) -> None:
+        """Refuse files by which other walls than this one would be described."""
+        for key, file in files.items():
+            if not file.is_file() or sha256(file.read_bytes()).digest() != self._digests[key]:
+                raise SceneError(key, "has changed since the wall was read from it; read the wall again", file.name)
 
     def _files(self) -> dict[str, Path]:
         """The drawing and the record that the wall is read from, by their keys."""
@@ -411,11 +415,12 @@ class Wall:
         Raises
         ------
         SceneError
-            If a law or a load is a Python object, which a file cannot hold.
+            If a law or a load is a Python object, which a file cannot hold, or the drawing or record has changed.
         """
         from .results import write_atomically
         from .scene_writer import toml
 
+        self._check_unchanged(self._files())
         description, path = {"title": self.scene.title} | self.description, path_of("path", path)
         for name, file in self._files().items():
             *tables, key = name.split(".")

@@ -150,7 +150,8 @@ class SupportSettlement(Lead):
         for part in paces.ravel().tolist():
             now, since, until = part * by / (window * ahead), state.time, until + window
             moving.append(self.share(state, now, run.steps_until(until, state), given))
-            by, ahead = by - now * (state.time - since), ahead - part
+            if not self.is_small:  # whole steps of another length go a little farther, or less far
+                by, ahead = by - now * (state.time - since), ahead - part
             if state.steps - seen >= self.criteria.interval:
                 seen = state.steps
                 if self.falls(state):

@@ -9,7 +9,7 @@ from runningbond.results.outcome import joined
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
 
-from .corners import passes_corners
+from .corners import left_out_corner
 from .model import Model
 from .notes import keeps_strength, led_far, left_out, moves, tilted_with_the_ground
 from .registry import MODELS, TOLERANCE, check_parameters, check_tolerance, find_model
@@ -71,7 +71,7 @@ def run_model(
         outcome.message,
         "" if finite else moves(model, scene, outcome, parameters.get("collapse")),
         "" if finite else led_far(model, scene, outcome),
-        "" if finite else passes_corners(scene, outcome, associated=model.name == "limit"),
+        "" if finite else _left_out_corner(model, scene, outcome),
         keeps_strength(model, scene),
         left_out(model, scene, finite),
     ]
@@ -79,6 +79,11 @@ def run_model(
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
         notes += [tilted_with_the_ground(scene)]
     return replace(outcome, model=model.name, message=joined(*notes))
+
+
+def _left_out_corner(model: Model, scene: Scene, outcome: Outcome) -> str:
+    is_exact = model.name in ("limit", "limit-nonassociated")
+    return left_out_corner(scene, outcome, dilates=model.name == "limit", is_exact=is_exact)
 
 
 def check_response(

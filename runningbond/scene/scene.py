@@ -333,15 +333,20 @@ class Scene:
     def overturning_size(self) -> float:
         """Median of the smaller sides of movable blocks [m], at most `block_size`: slender ones overturn across it."""
         low, high = self.blocks.boxes
-        return min(self.block_size, float(np.median((high - low).min(axis=1)[~self.fixed])))
+        return min(self.block_size, float(np.median((high - low)[self._moving_masonry].min(axis=1))))
 
     @property
     def lowest_block(self) -> float:
         """Smallest height of a movable block [m]; the beam counts only if nothing else can move."""
         low, high = self.blocks.boxes
+        return float((high - low)[self._moving_masonry, 1].min())
+
+    @property
+    def _moving_masonry(self) -> Mask:
+        """Movable blocks except the beam, or the beam if nothing else can move, ``(nb,)``."""
         movable = ~self.fixed
         masonry = movable & ~self.is_beam
-        return float((high - low)[masonry if masonry.any() else movable, 1].min())
+        return masonry if masonry.any() else movable
 
 
 def check_scene(scene: object) -> None:

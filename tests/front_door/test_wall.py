@@ -167,7 +167,11 @@ def test_copies_are_of_the_drawing_that_the_wall_was_read_from(tmp_path: Path) -
         dxf(tmp_path / f"{name}.dxf", closed(bricks))
     wall = rb.Wall.from_dict(tables(), folder=tmp_path)
     dxf(tmp_path / "wall.dxf", closed(BRICKS[:2]))
-    for copying in (lambda: wall.with_(), lambda: rb.sweep(wall, {"joint.friction": [0.5, 0.6]}, "limit", jobs=1)):
+    for copying in (
+        lambda: wall.with_(),
+        lambda: rb.sweep(wall, {"joint.friction": [0.5, 0.6]}, "limit", jobs=1),
+        lambda: wall.to_toml(tmp_path / "copy.toml"),
+    ):
         with pytest.raises(SceneError, match="^wall.drawing = 'wall.dxf': has changed since"):
             copying()
     assert wall.with_({"wall.drawing": "other.dxf"}).scene.wall.sum() == 2
