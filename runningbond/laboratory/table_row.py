@@ -138,7 +138,9 @@ class TableRow:
         """An entry as a number above 0, in SI units."""
         value = self.optional(column)
         if value is None:
-            raise SceneError(self.key(column), "is missing; it must be a number above 0, or a scene NAME.toml be there")
+            remedy = "is missing; it must be a number above 0, or a scene NAME.toml be there"
+            likely = [f'; did you mean column "{head}"?' for head, meant in self.misspelt() if meant == column]
+            raise SceneError(self.key(column), "".join([remedy, *likely[:1]]))
         return value
 
     def stress(self, column: str) -> float | None:

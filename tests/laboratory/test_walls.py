@@ -696,6 +696,13 @@ def with_column(folder: Path, head: str, cell: str) -> Path:
     return folder
 
 
+@pytest.mark.parametrize(("head", "hint"), [("H_0 [mm]", '; did you mean column "H_0 [mm]"?'), ("height [mm]", "")])
+def test_missing_column_names_the_one_that_may_be_meant(head: str, hint: str, tmp_path: Path) -> None:
+    write_folder(tmp_path, GRANITE, heads=HEADS.replace("H0 [mm]", head))
+    with pytest.raises(SceneError, match=f"H0: is missing; .* be there{re.escape(hint)}$"):
+        scene_of(read_folder(tmp_path)[0], Features())
+
+
 def test_conflicting_columns_of_one_name_are_refused(tmp_path: Path) -> None:
     """Once the last one counted, whatever the other contained."""
     with pytest.raises(SceneError, match=r"tests.csv, line 2: L = '1.5 m': is in another column as well, as 1000 mm;"):
