@@ -267,7 +267,6 @@ class Push(Lead):
     def go(self, traverse: Traverse, speed: float) -> State:
         """Push at a speed of the blocks that move farthest [m/s]; return the state at the end."""
         run, state = self.run, self.start.copy()
-        run.return_to(state)
         self.observe(run, state, 0.0)
         self.note(traverse, state, 0.0, 0.0)
         given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]

@@ -36,7 +36,7 @@ def left_out_corner(scene: Scene, outcome: Outcome, *, dilates: bool, is_exact: 
     Parameters
     ----------
     dilates
-        Whether contacts must open by tan φ times their slip, as in the bounds of associated limit analysis.
+        Whether corners on sides must open by tan φ times their slip, as in the bounds of associated limit analysis.
     is_exact
         Whether joints are rigid; otherwise they may overlap by `MAX_OVERLAP`.
     """
@@ -52,9 +52,9 @@ def left_out_corner(scene: Scene, outcome: Outcome, *, dilates: bool, is_exact: 
     jump = carried(blocks, owner[corner], at, motion) - carried(blocks, owner[side], at, motion)
     x, y = _directions(blocks.vertices[np.column_stack([side, blocks.successor[side]])]).T
     opening = jump[:, 0] * y - jump[:, 1] * x
-    if dilates:
+    if dilates:  # between two corners there is no normal by which slip would open them
         friction = min(material.friction for material in scene.materials_of_joints)
-        opening -= friction * np.abs(jump[:, 0] * x + jump[:, 1] * y)
+        opening -= np.where(place < len(on_sides.place), friction * np.abs(jump[:, 0] * x + jump[:, 1] * y), 0.0)
     most = np.full(place.max() + 1, -np.inf)
     np.maximum.at(most, place, opening)
     worst = int(np.argmin(most[place]))
