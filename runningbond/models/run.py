@@ -82,8 +82,8 @@ def run_model(
 
 
 def _left_out_corner(model: Model, scene: Scene, outcome: Outcome) -> str:
-    is_exact = model.name in ("limit", "limit-nonassociated")
-    return left_out_corner(scene, outcome, dilates=model.name == "limit", is_exact=is_exact)
+    is_exact = model.kind in ("bound", "certificate")
+    return left_out_corner(scene, outcome, dilates=model.kind == "bound", is_exact=is_exact)
 
 
 def check_response(
