@@ -256,7 +256,7 @@ class Wall:
                 raise SceneError(name, f'is within a table; give it as {{"{full_name}": {abbreviated(value)}}}', value)
             _check_has_its_table(name, value)
         copy = Wall(merge_changes(self._description, [*nested_changes, tables]), self.folder)
-        self._check_unchanged({key: file for key, file in self._files().items() if copy._files().get(key) == file})
+        self._check_unchanged(dict(self._files().items() & copy._files().items()))
         return copy
 
     def _check_unchanged(self, files: dict[str, Path]) -> None:

@@ -15,7 +15,7 @@ from runningbond.scene.ranges import suggestion
 
 from .formulas import formula
 from .rig import Features
-from .scores import cycle_ends
+from .scores import has_cycles
 
 PUSHED = Features(driven=False)
 
@@ -38,7 +38,7 @@ class Rung:
         """Why a wall is not predicted with this rung; empty if it is."""
         if self.base != "fem":
             return ""
-        if len(cycle_ends(scene.drive_path)) > 1:
+        if has_cycles(scene.drive_path):
             return "left out: walls that are pushed to and fro take too long with it"
         rocks = scene.beam is not None and scene.beam.condition == "free"
         return (

@@ -22,7 +22,7 @@ from .measured import MeasuredWall
 from .notes import notes_on
 from .predictions import Prediction
 from .rig import driven_path, vertical_load
-from .scores import cycle_ends
+from .scores import has_cycles
 from .stones import sources
 from .summary import model_errors, percent, summary_sheet, totals, verdicts
 
@@ -160,7 +160,7 @@ def _rig(wall: MeasuredWall, one: Prediction) -> str:
     (left, bottom), (right, top) = one.scene.blocks.extent(one.scene.masonry)
     pressed = -beam.force[1] if beam else vertical_load(wall)
     where = "from a scene of its own" if wall.scene_file else f"from line {wall.row.line} of {wall.row.path.name}"
-    kind = "pushed to and fro" if len(cycle_ends(driven_path(wall))) > 1 else "pushed to one side"
+    kind = "pushed to and fro" if has_cycles(driven_path(wall)) else "pushed to one side"
     return (
         f"{1e3 * (right - left):.0f} × {1e3 * (top - bottom):.0f} mm, {thickness_text(one.scene)}, under "
         f"{pressed / 1e3:.0f} kN, {kind}; made {where}."

@@ -20,7 +20,7 @@ from .ladder import Rung
 from .measured import MeasuredWall
 from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
 from .rig import scene_of
-from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, goes_to_both_sides, marks_of, ratio
+from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, goes_to_both_sides, has_cycles, marks_of, ratio
 
 ARRIVED = 0.99
 """Share of the path's length above which a wall has been followed to the end of the path."""
@@ -75,7 +75,7 @@ class Prediction:
     @property
     def is_to_and_fro(self) -> bool:
         """Whether it has cycles; a scene of its own may push to one side although the test was cyclic."""
-        return len(cycle_ends(self.scene.drive_path)) > 1
+        return has_cycles(self.scene.drive_path)
 
     @property
     def _is_to_both_sides(self) -> bool:

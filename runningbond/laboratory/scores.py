@@ -237,6 +237,11 @@ def cycle_ends(path: tuple[float, ...]) -> tuple[float, ...]:
     )
 
 
+def has_cycles(path: tuple[float, ...]) -> bool:
+    """Whether a path pushes a wall to and fro."""
+    return len(cycle_ends(path)) > 1
+
+
 def goes_to_both_sides(path: tuple[float, ...]) -> bool:
     """Whether a path pushes a wall to both sides."""
     return len({goal > 0 for goal in cycle_ends(path)}) > 1

@@ -20,17 +20,20 @@ KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES)
 NAME = "test unit name"
 """Column of the walls' names."""
 
-USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
-USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "σ0,pc": "MPa"}
-"""Columns that are read as numbers, and their units if their heads have none."""
-
-WORDS = (NAME, "cyclic / monotonic", "joints", "stone", "from test report: failure type")
-"""Columns that are read as words."""
-
 FAILURE = "From test report: Failure type"
-NUMBERS = ("H", "L", "t", "H0", "hb", "lb", "Ntot", "Vmax,+", "Vmax,-", "σ0,pc")
-AS_WRITTEN = (*NUMBERS, "Reference", "Cyclic / Monotonic", "Joints", "Stone", FAILURE)
-"""Columns that are read, as tables write them."""
+NUMBERS = {"H": "mm", "L": "mm", "t": "mm", "H0": "mm", "hb": "mm", "lb": "mm", "Ntot": "kN"}
+NUMBERS |= {"Vmax,+": "kN", "Vmax,-": "kN", "σ0,pc": "MPa"}
+"""Columns that are read as numbers, as tables write them, and their units if their heads have none."""
+
+USUAL = {column.casefold(): unit for column, unit in NUMBERS.items()}
+"""The same in lower case."""
+
+OF_WORDS = ("Cyclic / Monotonic", "Joints", "Stone", FAILURE)
+WORDS = (NAME, *map(str.casefold, OF_WORDS))
+"""Columns that are read as words, in lower case."""
+
+AS_WRITTEN = (*NUMBERS, "Reference", *OF_WORDS)
+"""Columns that have a meaning, as tables write them."""
 
 OTHER_NAMES = {"failure type": FAILURE, "failure mode": FAILURE, "n": "Ntot"}
 OTHER_NAMES |= dict.fromkeys(("σ0", "sigma0", "sigma_0", "sigma0,pc"), "σ0,pc")

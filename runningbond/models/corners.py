@@ -13,7 +13,9 @@ from scipy.spatial import cKDTree
 
 from runningbond.results import Outcome
 from runningbond.results.mechanism import MAX_OVERLAP, carried, fastest_corner
-from runningbond.scene import Array, Indices, Mask, Scene
+from runningbond.scene import Array, Blocks, Indices, Mask, Scene
+
+from .model import Model
 
 PARALLEL = 1e-3
 """Sine of the angle between a joint and a side up to which the joint lies on that side."""
@@ -30,15 +32,11 @@ class Touching(NamedTuple):
     place: Indices  # (n,) contact; blocks stay apart if one of the sides of a contact keeps them apart
 
 
-def left_out_corner(scene: Scene, outcome: Outcome, *, dilates: bool, is_exact: bool) -> str:
+def left_out_corner(model: Model, scene: Scene, outcome: Outcome) -> str:
     """Note on the contact of a corner that a mechanism violates most; empty if it violates none.
 
-    Parameters
-    ----------
-    dilates
-        Whether corners on sides must open by tan φ times their slip, as in the bounds of associated limit analysis.
-    is_exact
-        Whether joints are rigid; otherwise they may overlap by `MAX_OVERLAP`.
+    In the mechanisms of upper bounds, corners on sides must open by tan φ times their slip. Those of proofs are exact,
+    and those of elastic joints may overlap by `MAX_OVERLAP`.
     """
     motion, blocks = outcome.motion, scene.blocks
     if motion.shape != (len(blocks), 3) or not np.isfinite(motion).all() or outcome.moved is not None:
@@ -50,15 +48,16 @@ def left_out_corner(scene: Scene, outcome: Outcome, *, dilates: bool, is_exact: 
         return ""
     at, owner = blocks.vertices[corner], blocks.owner
     jump = carried(blocks, owner[corner], at, motion) - carried(blocks, owner[side], at, motion)
-    x, y = _directions(blocks.vertices[np.column_stack([side, blocks.successor[side]])]).T
+    x, y = _between(blocks, side, blocks.successor[side]).T
     opening = jump[:, 0] * y - jump[:, 1] * x
-    if dilates:  # between two corners there is no normal by which slip would open them
+    if model.kind == "bound":  # between two corners there is no normal by which slip would open them
         friction = min(material.friction for material in scene.materials_of_joints)
         opening -= np.where(place < len(on_sides.place), friction * np.abs(jump[:, 0] * x + jump[:, 1] * y), 0.0)
     most = np.full(place.max() + 1, -np.inf)
     np.maximum.at(most, place, opening)
     worst = int(np.argmin(most[place]))
-    if most[place[worst]] >= -(EXACT if is_exact else MAX_OVERLAP) * fastest_corner(blocks, motion):
+    slack = EXACT if model.kind in ("bound", "certificate") else MAX_OVERLAP
+    if most[place[worst]] >= -slack * fastest_corner(blocks, motion):
         return ""
     where = f"({at[worst, 0]:.4g}, {at[worst, 1]:.4g})"
     what = f"contact at the corner {where} m, which touches a block without a joint, is left out"
@@ -93,15 +92,13 @@ def corners_on_corners(scene: Scene) -> Touching:
     joined, _ = _joints_at(scene, first, second)
     alone = ~np.isin(np.arange(len(first)), joined)
     first, second = first[alone], second[alone]
-    number = np.arange(len(first))
-    corner, other, place = (np.concatenate(each) for each in ((first, second), (second, first), (number, number)))
-    corner, other, place = np.tile(corner, 2), np.tile(other, 2), np.tile(place, 2)
-    half = len(corner) // 2
-    side = np.concatenate([other[:half], before[other[half:]]])
-    x, y = _directions(blocks.vertices[np.column_stack([side, blocks.successor[side]])]).T
+    corner = np.concatenate([first, second, first, second])
+    side = np.concatenate([second, first, before[second], before[first]])
+    place = np.tile(np.arange(len(first)), 4)
+    x, y = _between(blocks, side, blocks.successor[side]).T
     outside = np.ones(len(corner), dtype=np.bool_)
     for neighbour in (before[corner], blocks.successor[corner]):
-        u, v = _directions(blocks.vertices[np.column_stack([corner, neighbour])]).T
+        u, v = _between(blocks, corner, neighbour).T
         outside &= u * y - v * x >= -PARALLEL
     return Touching(corner[outside], side[outside], np.unique(place[outside], return_inverse=True)[1])
 
@@ -121,6 +118,11 @@ def _joints_at(scene: Scene, corner: Indices, other: Indices) -> tuple[Indices, 
     owners = blocks.owner[np.column_stack([corner, other])][near]
     own = (np.sort(joints.block[joint]) == np.sort(owners)).all(axis=1)
     return near[own], joint[own]
+
+
+def _between(blocks: Blocks, start: Indices, stop: Indices) -> Array:
+    """Unit vectors ``(n, 2)`` from corners ``(n,)`` to others."""
+    return _directions(blocks.vertices[np.column_stack([start, stop])])
 
 
 def _directions(segments: Array) -> Array:

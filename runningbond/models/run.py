@@ -71,7 +71,7 @@ def run_model(
         outcome.message,
         "" if finite else moves(model, scene, outcome, parameters.get("collapse")),
         "" if finite else led_far(model, scene, outcome),
-        "" if finite else _left_out_corner(model, scene, outcome),
+        "" if finite else left_out_corner(model, scene, outcome),
         keeps_strength(model, scene),
         left_out(model, scene, finite),
     ]
@@ -79,11 +79,6 @@ def run_model(
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
         notes += [tilted_with_the_ground(scene)]
     return replace(outcome, model=model.name, message=joined(*notes))
-
-
-def _left_out_corner(model: Model, scene: Scene, outcome: Outcome) -> str:
-    is_exact = model.kind in ("bound", "certificate")
-    return left_out_corner(scene, outcome, dilates=model.kind == "bound", is_exact=is_exact)
 
 
 def check_response(

@@ -139,7 +139,7 @@ def test_arch_falls_once_its_hinges_are_collinear() -> None:
 
 
 def test_support_is_where_its_path_ends_although_blocks_turn() -> None:
-    """Time steps depend on the contacts: with those of the beginning of each stage it ended 0.3 % short of that."""
+    """Time steps depend on the contacts: with those of the beginning of each stage it fell short of that."""
     seen: list[Array] = []
 
     def observe(run: Run, state: State, share: float) -> None:
