@@ -16,8 +16,9 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh, splu
 from threadpoolctl import threadpool_limits
 
+from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import ModalWall, modal_wall
-from fem_interface.operators import lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface.operators import lumped_mass, mass_matrix, stiffness_matrix
 from fem_interface.system import system_of
 from runningbond.dynamics import Run, State, stable_step
 from runningbond.scene import Scene, scene_from_dict

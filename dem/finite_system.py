@@ -139,10 +139,10 @@ class RigidContacts:
             at = ((1 - share) * at[pairs[:, 0]] + share * at[pairs[:, 1]]).reshape(-1, 2)
             joint = np.tile(joint[pairs[:, 0]], self._points)
         tangent = self.outline.joints.ends[:, 1] - self.outline.joints.ends[:, 0]
-        here = np.flatnonzero(joint >= 0)
-        along = ((at * tangent[joint]).sum(axis=1)[here], (points.position * tangent[points.joint]).sum(axis=1))
-        found = np.zeros(len(points), dtype=np.int64)
-        found[np.lexsort((along[1], points.joint))] = key[here][np.lexsort((along[0], joint[here]))]
+        here, own = np.flatnonzero(joint >= 0), np.flatnonzero(points.joint < len(tangent))
+        along = (at[here] * tangent[joint[here]]).sum(axis=1), (points.position * points.tangent).sum(axis=1)[own]
+        found = np.full(len(points), -1)  # contacts of single corners are found like those of sides that meet later
+        found[own[np.lexsort((along[1], points.joint[own]))]] = key[here][np.lexsort((along[0], joint[here]))]
         return found
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:

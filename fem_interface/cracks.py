@@ -18,7 +18,7 @@ from runningbond.joints import joint_stiffness
 from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
 from runningbond.scene.ranges import one_of
 
-from .operators import edges_between, find_edges
+from .joint_elements import edges_between, edges_of, find_edges
 
 Cracks: TypeAlias = Literal["joints", "blocks"]
 """Where a wall may crack: only at its joints, or also between all triangles of its blocks."""
@@ -113,9 +113,13 @@ class PassedOn(Action):
         """The pieces that carry a force on a block: those that touch its point, or the nearest one if none does."""
         own = np.flatnonzero(self.owner == block)
         touched = np.intersect1d(own, scene.blocks.containing(at))
-        if len(touched):
-            return touched
-        return own[[int(np.argmin(shapely.distance(shapely.Point(at), scene.blocks.shapes(own))))]]
+        return touched if len(touched) else np.array([_nearest(scene.blocks, self.owner, block, at)])
+
+
+def _nearest(blocks: Blocks, owner: Indices, block: int, at: Array) -> int:
+    """The piece of a block that is nearest to a point."""
+    own = np.flatnonzero(owner == block)
+    return int(own[np.argmin(shapely.distance(shapely.Point(at), blocks.shapes(own)))])
 
 
 def added_compliance(parts: Pieces) -> float:
@@ -178,22 +182,29 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     inside = new[one], new[across[one]]
     sides = [np.concatenate(pair) for pair in zip(between, inside, strict=True)]
     joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
-    first = np.searchsorted(joint, np.arange(joint[-1] + 1))
     outlines = [scene.blocks.polygon(owner[k]) if held[k] else points[first_node[k] :][:3] for k in range(len(owner))]
+    blocks = Blocks.from_polygons(outlines)
+    between_pieces = np.empty((len(scene.joints) + len(inside[0]), 2), dtype=np.int64)
+    _, first = np.unique(joint, return_index=True)
+    between_pieces[joint[first]] = np.column_stack([block[side[first, 0]] for side in sides])
+    for k in np.flatnonzero(scene.joints.at_corner):
+        at = scene.joints.ends[k].mean(axis=0)
+        between_pieces[k] = [_nearest(blocks, owner, int(each), at) for each in scene.joints.block[k]]
     inner = scene.joint_materials.index(scene.inner_joint)
     passed_on = partial(PassedOn, wall=scene, owner=owner)
     parted = replace(
         scene,
-        blocks=Blocks.from_polygons(outlines),
+        blocks=blocks,
         load=Load(scene.load.gravity, *(tuple(map(passed_on, loads)) for loads in (scene.load.live, scene.load.dead))),
         fixed=scene.fixed[owner],
         beam=scene.beam and replace(scene.beam, block=int(first_piece[scene.beam.block])),
         wall=scene.wall[owner],
         pins=_pins(scene, mesh, block, node, whole),
         joints=Joints(
-            np.column_stack([block[side[first, 0]] for side in sides]),
+            between_pieces,
             np.concatenate([scene.joints.ends, points[inside[0]]]),
             np.concatenate([scene.joints.inner, np.ones(len(inside[0]), dtype=bool)]),
+            np.concatenate([scene.joints.corner_length, np.zeros(len(inside[0]))]),
         ),
         material_of_block=scene.material_of_block[owner],
         material_of_joint=np.append(scene.material_of_joint, np.full(len(inside[0]), inner)),
@@ -233,11 +244,6 @@ def _split_nodes(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> 
     loose = ~held[piece]
     node[triangles[loose]] = mesh.triangles[loose]
     return first, node, triangles
-
-
-def edges_of(triangles: Indices) -> Indices:
-    """Edges of triangles ``(nt, 3)``, directed as the triangles' vertices are ordered, ``(3 nt, 2)``."""
-    return np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
 
 
 def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:

@@ -31,7 +31,7 @@ def printed_energies(length: float, cohesion: float, tension: float, young: floa
 def fractured(scene: Scene, energies: Energies) -> tuple[Sequence[JointMaterial], Indices]:
     """Materials of a scene's joints with their fracture energies, and the number of each joint's material, ``(nj,)``.
 
-    Inner joints are not made of mortar and always keep the energies of the scene.
+    Inner joints and contacts of single corners are not made of mortar, and keep the energies of the scene.
 
     Raises
     ------
@@ -43,13 +43,14 @@ def fractured(scene: Scene, energies: Energies) -> tuple[Sequence[JointMaterial]
     formula = corrected_energies if energies == "corrected" else printed_energies
     length = _printed_length(scene) if energies == "printed" else scene.joints.length
     # Joints whose lengths differ only by rounding share one material.
-    rounded = np.where(scene.joints.inner, 0.0, np.rint(length / scene.blocks.tolerance))
+    kept = scene.joints.inner | scene.joints.at_corner
+    rounded = np.where(kept, 0.0, np.rint(length / scene.blocks.tolerance))
     keys = np.column_stack([scene.material_of_joint, rounded])
     _, first, kind = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     materials = []
     for joint in first:
         material = scene.joint_materials[scene.material_of_joint[joint]]
-        if scene.joints.inner[joint]:
+        if kept[joint]:
             materials.append(material)
             continue
         if not isinstance(material.elasticity, Mortar):

@@ -11,8 +11,8 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from runningbond.joints.wall_points import wall_stiffness
 from runningbond.scene import Array
 
+from .joint_elements import nodal_jump
 from .modal_wall import ModalWall
-from .operators import nodal_jump
 
 GROUND_STIFFNESS = 1e-9
 """Stiffness of springs to the ground per mass, relative to the largest ω²; they let floating bodies vibrate too."""

@@ -6,7 +6,8 @@ import numpy as np
 
 from runningbond.scene import Array, Mask, SceneError
 
-from .cracks import Pieces, edges_of
+from .cracks import Pieces
+from .joint_elements import edges_of
 
 Loads: TypeAlias = Literal["consistent", "inner"]
 """Loads proportional to mass: consistent with the mass, or lumped at nodes inside the blocks (the paper's Sec. 5)."""

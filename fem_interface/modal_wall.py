@@ -11,10 +11,10 @@ from runningbond.joints import Rule, wall_rule
 from runningbond.joints.wall_law import row_of_joint
 from runningbond.scene import Array, Forces, Indices, Scene
 
-from .cracks import Cracks, Pieces, edges_of, pieces
+from .cracks import Cracks, Pieces, pieces
+from .joint_elements import JointElements, PointsOn, edges_of, joint_elements
 from .loads import Loads, inner_mass
 from .modes import BENDING, ModeCount
-from .operators import JointElements, PointsOn, joint_elements
 from .templates import Template, nodes_of, templates, triangles_of
 
 RESOLUTION = 1e-9

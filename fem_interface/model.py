@@ -43,11 +43,11 @@ from .cracks import Cracks, added_compliance
 from .fictitious_inertia import with_fictitious_inertia
 from .finite_system import finite_system
 from .fracture import Energies
+from .joint_elements import PointsOn
 from .loads import Loads
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .node_outline import node_outline
-from .operators import PointsOn
 from .piece_masses import with_heavier_pieces
 from .system import system_of
 

@@ -111,6 +111,7 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     check_finite(scene)
     ContactMaterials(scene)
     rule = spread_rule(cells) if spreads(scene, finite=True) else lobatto()
+    scene = scene.without_corner_contacts()
     wall, outline = modal_wall(scene, cells, modes, rule), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])

@@ -13,9 +13,9 @@ from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
 from runningbond.limit.kinematics import Jump, jump_operator
 from runningbond.scene import Array, Indices, Scene
 
+from .joint_elements import nodal_jump
 from .modal_wall import modal_wall
 from .modes import ModeCount
-from .operators import nodal_jump
 
 RULE = lobatto(3)  # exact for the squared jumps of rigid blocks
 

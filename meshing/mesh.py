@@ -21,7 +21,7 @@ class WallMesh:
 
     Every node belongs to one block, so blocks are connected only through their joints. Blocks, nodes and triangles are
     in the order of the scene's blocks, joint elements in the order of its joints and along their tangents. Blocks of
-    one shape have the same nodes and triangles in the same order.
+    one shape have the same nodes and triangles in the same order. Contacts of single corners have no elements.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
 
 def _interfaces(scene: Scene, outline: NodeOutlines, first_node: Indices) -> tuple[Indices, Indices]:
     """Nodes of the joint elements ``(ne, 4)`` and the joint of each ``(ne,)``."""
-    joint = np.repeat(np.arange(len(scene.joints)), outline.divisions)
+    joint = np.repeat(np.arange(len(outline.divisions)), outline.divisions)
     step = _runs(np.zeros_like(outline.divisions), outline.divisions)
     a, b = scene.joints.block[joint].T
     start_a, start_b = outline.start[joint].T

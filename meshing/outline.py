@@ -25,7 +25,7 @@ class NodeOutlines:
     first : (nb + 1,) int
         Block ``i`` owns ``points[first[i]:first[i + 1]]``.
     divisions : (nj,) int
-        Number of equal parts of each joint.
+        Number of equal parts of each joint; contacts of single corners are left out.
     start : (nj, 2) int
         Number, within the outlines of block a and block b, of the first node that each outline has on the joint.
     """
@@ -53,7 +53,7 @@ def outlines(scene: Scene, cells: int) -> NodeOutlines:
         Number of parts of half a block along the course, and of a block's height. The ground has nodes only at its
         corners and on its joints.
     """
-    blocks, joints = scene.blocks, scene.joints
+    blocks, joints = scene.blocks, scene.joints.between_sides
     along, length = _edges(blocks)
     # The target length of parts on a joint is the smaller one of its two blocks.
     run = joints.ends[:, 1] - joints.ends[:, 0]

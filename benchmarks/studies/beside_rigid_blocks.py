@@ -27,8 +27,8 @@ from typing import get_args
 import numpy as np
 from joblib import Parallel, delayed
 
+from fem_interface.joint_elements import PointsOn
 from fem_interface.model import fem
-from fem_interface.operators import PointsOn
 from runningbond.compare import published_scene
 from runningbond.compare.table import answer
 from runningbond.models import run_model

@@ -15,7 +15,7 @@ from unittest.mock import patch
 import numpy as np
 
 import dem.dynamic
-from fem_interface.operators import PointsOn
+from fem_interface.joint_elements import PointsOn
 from runningbond.compare import published_scene
 from runningbond.draws import Scatter
 from runningbond.dynamics import CALMER, load_stepping

@@ -5,7 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from runningbond.joints import wall_points, wall_rule
-from runningbond.pictures.legend import CONDITIONS, strength, thickness_text, used_block_materials, used_joint_materials
+from runningbond.pictures.legend import (
+    CONDITIONS,
+    strength,
+    strength_at_corners,
+    thickness_text,
+    used_block_materials,
+    used_joint_materials,
+)
 from runningbond.pictures.quantities import beginning, counted, millimetres, minus, pair, readable, signed
 from runningbond.scene import (
     ANCHOR,
@@ -56,15 +63,18 @@ def _mass(scene: Scene, mass: float) -> str:
 
 def _joints(scene: Scene) -> Iterator[Row]:
     joints, bed = scene.joints, scene.joints.is_bed
-    cracks = int(joints.inner.sum())
-    lengths = f", {joints.length.min():.4g} … {joints.length.max():.4g} m long" if len(joints) else ""
+    cracks, corners = int(joints.inner.sum()), int(joints.at_corner.sum())
+    length = joints.between_sides.length
+    lengths = f", {length.min():.4g} … {length.max():.4g} m long" if len(length) else ""
     inner = f", and {counted(cracks, 'potential crack')}" if cracks else ""
-    yield "joints", f"{len(joints) - cracks}{inner}{lengths}"
+    yield "joints", f"{len(length) - cracks}{inner}{lengths}"
     for k in used_joint_materials(scene):
-        own, material = scene.material_of_joint == k, scene.joint_materials[k]
+        own, material = (scene.material_of_joint == k) & ~joints.at_corner, scene.joint_materials[k]
         inset = f", contacts {material.inset:g} m from the ends" if material.inset else ""
         lie = f"{int((own & bed).sum())} bed, {int((own & ~bed).sum())} head"
         yield f"  of {material.name}", f"{lie}: {strength(material)}{inset}"
+    if corners:
+        yield "corners", f"{corners} on sides without a joint there: {strength_at_corners(scene)}"
     tolerance = f"{scene.blocks.tolerance:.3g} m count as contact"
     rule = wall_rule(scene)
     yield "contact points", f"{len(wall_points(scene, rule))}, {len(rule.nodes)} to a joint; gaps up to {tolerance}"

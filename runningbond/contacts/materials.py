@@ -12,12 +12,6 @@ from runningbond.scene import Indices, JointMaterial, Scene, SceneError, table_o
 from .search import Contacts
 
 
-def dry(material: JointMaterial) -> JointMaterial:
-    """The broken version of a material: no cohesion, no tension; the same friction, stiffness and crushing."""
-    still = replace(material, softening="linear", fracture_energy_2=None)
-    return replace(still, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=None)
-
-
 class ContactMaterials:
     """Materials of the contacts of a scene.
 
@@ -51,7 +45,7 @@ class ContactMaterials:
                 what = f"finite displacements need one inset, and joint.inset is {scene.joint.inset:g}"
                 raise SceneError(f"{table}.inset", what, material.inset)
         own, self._of_joint = scene.joint_materials, scene.material_of_joint
-        self._broken = tuple(map(dry, own))
+        self._broken = tuple(each.broken() for each in own)
         both = zip(own, self._broken, strict=True)
         self._all = (*(each if each.is_bonded else broken for each, broken in both), *self._broken)
         # Equal materials share the number of the first, so that points form few runs of one material.

@@ -44,7 +44,7 @@ class Outline:
     held: Mask  # (nb,) fixed blocks: there are no contacts between two of them
     # (nj,) pair of sides of each joint of the undeformed wall, ascending (`side_pair`), and (nj,) the joint's number
     joined: tuple[Indices, Indices]
-    joints: Joints  # joints of the undeformed wall
+    joints: Joints  # joints of the undeformed wall; contacts of single corners are sides that met later
 
     @classmethod
     def of(cls, scene: Scene) -> "Outline":
@@ -78,9 +78,10 @@ class Outline:
         ends, runs_on = np.column_stack([own, after]), np.zeros((len(own), 2))
         ends[behind.side, behind.end], runs_on[behind.side, behind.end] = len(own) + np.arange(len(none)), behind.far
         sides = normal, length, straight + runs_on.sum(axis=1), ends, runs_on
-        joined = _joined_sides(blocks, normal, length, scene.joints)
+        joints = scene.joints.between_sides
+        joined = _joined_sides(blocks, normal, length, joints)
         parts = ConvexParts.of(blocks, normal)
-        return cls(blocks, parts, *corners, *sides, scene.thickness_of_blocks, scene.fixed, joined, scene.joints)
+        return cls(blocks, parts, *corners, *sides, scene.thickness_of_blocks, scene.fixed, joined, joints)
 
     @property
     def margin(self) -> float:

@@ -186,22 +186,27 @@ class Lead(ABC):
 
     def crushed(self, state: State) -> Array:
         """Permanent closure of joints at their ends [m], ``(nj, 2)``; empty if no joint can crush."""
-        return np.asarray(self.run.at_joints(state)[5, self._ends]) if self._has_caps else np.zeros((0, 2))
+        if not self._has_caps:
+            return np.zeros((0, 2))
+        return np.asarray(np.append(self.run.at_joints(state)[5], 0.0)[self._ends])
 
     @cached_property
     def _has_caps(self) -> bool:
         """Whether any joint of the scene can crush."""
-        return bool(np.isfinite(wall_caps(self.scene, self.points.joint[self._ends].ravel())[0]).any())
+        return bool(np.isfinite(wall_caps(self.scene, np.arange(len(self.scene.joints)))[0]).any())
 
     @cached_property
     def _ends(self) -> Indices:
-        """The first and the last point of each joint of the scene ``(nj, 2)``."""
+        """The first and the last point of each joint of the scene ``(nj, 2)``; −1 for joints without points."""
         own = np.flatnonzero(self.points.joint < len(self.scene.joints))
         joint, (start, end) = self.points.joint[own], self.scene.joints.ends.swapaxes(0, 1)
         along = ((self.points.position[own] - start[joint]) * (end - start)[joint]).sum(axis=1)
         order = np.lexsort((along, joint))
-        last = np.cumsum(np.bincount(joint, minlength=len(start)))
-        return np.asarray(own[order[np.column_stack([np.append(0, last[:-1]), last - 1])]])
+        count = np.bincount(joint, minlength=len(start))
+        last = np.cumsum(count)
+        ends = np.full((len(start), 2), -1)
+        ends[count > 0] = own[order[np.column_stack([last - count, last - 1])[count > 0]]]
+        return ends
 
     def conclude(self, traverse: Traverse, peaks: Peaks, seen: list[tuple[Array, Array]]) -> None:
         """Take the answer of a traverse from its peaks, its mechanism from motions and crushing `seen` at its rows."""

@@ -59,7 +59,8 @@ class JointPoints:
     normal, tangent : (np, 2) float
         Unit vectors; n points from a to b, t = (−n_y, n_x).
     area : (np,) float
-        Area of each point [m²]; over a joint they add up to length × thickness.
+        Area of each point [m²]; over a joint they add up to length × thickness, over the contact of a corner to
+        `Joints.corner_length` × thickness.
     """
 
     joint: Indices
@@ -118,7 +119,8 @@ def joint_points(
     n = len(rule.nodes)
     reach = length / 2 - np.broadcast_to(inset, len(joints))[:, None]
     position = (start + stop)[:, None] / 2 + (reach * rule.nodes)[:, :, None] * tangent[:, None]
-    area = np.broadcast_to(thickness, len(joints))[:, None] * length * rule.weights / 2
+    bearing = np.where(joints.at_corner, joints.corner_length, joints.length)
+    area = (np.broadcast_to(thickness, len(joints)) * bearing)[:, None] * rule.weights / 2
     return JointPoints(
         np.repeat(np.arange(len(joints)), n),
         np.repeat(joints.block, n, axis=0),

@@ -104,9 +104,9 @@ def rocking_softness(points: JointPoints) -> float:
 
 
 def _beds(scene: Scene) -> Indices:
-    """Bed joints under blocks, or all joints if there are none; except those inside blocks and under a beam."""
+    """Bed joints under blocks, or all joints if there are none; not in blocks, under a beam, or at single corners."""
     joints = scene.joints
-    between = ~joints.inner & ~scene.is_beam[_upper(scene)]
+    between = ~joints.inner & ~joints.at_corner & ~scene.is_beam[_upper(scene)]
     flat = between & joints.is_bed
     return np.flatnonzero(flat if flat.any() else between)
 

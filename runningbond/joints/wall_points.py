@@ -17,6 +17,9 @@ with 17 points 0.3 % less (SW.200.1, docs/laboratory.md)."""
 MIN_POINTS = 3
 """Least number of points on a part of such a joint: with two, its rotational stiffness is that of its two ends."""
 
+CORNER_INSET = 0.4995
+"""Inset of the points on the contact of a single corner, relative to its length: their lever arm is of no account."""
+
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
     """Place a quadrature rule on every joint of a scene, with its ends moved in by the joint's inset."""
@@ -91,7 +94,8 @@ def listed_points(scene: Scene, count: int) -> JointPoints | None:
 
 def wall_inset(scene: Scene) -> Array:
     """Distance [m] of the outermost points of each joint of a scene from the joint's ends, ``(nj,)``."""
-    return np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
+    inset = np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
+    return np.where(scene.joints.at_corner, CORNER_INSET * scene.joints.length, inset)
 
 
 def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:

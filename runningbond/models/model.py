@@ -111,6 +111,7 @@ class Model:
                 read = material.name != "inner_joint" or "inner_joint" in self.reads
                 given = [key for key in _given_keys(material) if not (read and f"{kind}.{key}" in self.reads)]
                 unread += [f"{table_of(material)}.{key}" for key in given]
+        unread = list(dict.fromkeys(unread))  # contacts of corners have materials of the same name
         if scene.beam is not None and scene.beam.force_line != "moving" and not finite:
             unread.append("beam.force_line")
         if scene.drive is not None and scene.drive.rate is not None and "beam.drive.rate" not in self.reads:

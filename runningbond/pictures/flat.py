@@ -17,7 +17,7 @@ from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mec
 from .deformed_shape import DeformedShape, Extent, joint_lines, outline, undeformed_shape, usual_side
 from .joint_state import JointState
 from .labels import block_numbers
-from .legend import block_colours, joint_colour, used_joint_materials, wall_caption
+from .legend import CORNER, block_colours, joint_colour, used_joint_materials, wall_caption
 from .mechanism import mechanism_shape
 from .quantities import readable
 from .resultants import resultants
@@ -113,6 +113,7 @@ def _draw(
         for number in used_joint_materials(scene):
             lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
             _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
+        axes.plot(*scene.joints.ends[scene.joints.at_corner].mean(axis=1).T, **CORNER, ms=1.2 * width)
     annotate(axes, shape, room, numbers=numbers, thrust=thrust)
     caption.write(axes)
 

@@ -15,6 +15,9 @@ from .ties import TIE, tie_kinds
 LINE_LENGTH = 58
 """Characters per line of the legend."""
 
+CORNER: dict[str, Any] = {"marker": "o", "ls": "none", "color": DARK}
+"""Marker of a corner that touches a side without a joint."""
+
 CONDITIONS = {
     "free": "free to turn",
     "level": "kept level, free to rise",
@@ -29,10 +32,11 @@ def wall_caption(scene: Scene) -> Caption:
     used = used_block_materials(scene)
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
     density += "" if any(scene.load.gravity) else ", no gravity"
-    n, cracks = scene.count_blocks(), int(scene.joints.inner.sum())
+    n, cracks, corners = scene.count_blocks(), int(scene.joints.inner.sum()), int(scene.joints.at_corner.sum())
     size = f"{length:.4g} × {height:.4g} m, {thickness_text(scene)}{density}"
-    counts = f"{counted(n, 'block')}, {counted(len(scene.joints) - cracks, 'joint')}"
+    counts = f"{counted(n, 'block')}, {counted(len(scene.joints) - cracks - corners, 'joint')}"
     counts += f", {counted(cracks, 'potential crack')}" if cracks else ""
+    counts += f", {counted(corners, 'corner')} on sides" if corners else ""
     key = [*_materials(scene), *_bodies(scene), *_loads(scene)]
     return Caption(wall_title(scene.title), "", [size, counts], key, columns=1)
 
@@ -64,8 +68,14 @@ def used_block_materials(scene: Scene) -> list[int]:
 
 
 def used_joint_materials(scene: Scene) -> list[int]:
-    """Numbers of the materials of joints."""
-    return [int(k) for k in np.unique(scene.material_of_joint)]
+    """Numbers of the materials of joints, without contacts of single corners."""
+    return [int(k) for k in np.unique(scene.material_of_joint[~scene.joints.at_corner])]
+
+
+def strength_at_corners(scene: Scene) -> str:
+    """Strength of the contacts of single corners, of all their materials."""
+    materials = [scene.joint_materials[k] for k in np.unique(scene.material_of_joint[scene.joints.at_corner])]
+    return "; ".join(dict.fromkeys(map(strength, materials)))
 
 
 def strength(material: JointMaterial) -> str:
@@ -99,12 +109,16 @@ def _materials(scene: Scene) -> list[Any]:
             handles.append(Patch(fc=colour, ec="0.5", lw=0.5, label=label))
     bed, several = scene.joints.is_bed, len(used_joint_materials(scene)) > 1
     for k in used_joint_materials(scene):
-        own = scene.material_of_joint == k
+        own = (scene.material_of_joint == k) & ~scene.joints.at_corner
         material = scene.joint_materials[k]
         lies = " (bed)" if bed[own].all() else " (head)" if not bed[own].any() else ""
         name = {"joint": "joints", "inner_joint": "potential cracks"}.get(material.name, f"{material.name} joints")
         text = f"{name}{lies if several and material.name != 'inner_joint' else ''}: {strength(material)}"
         handles.append(Line2D([], [], color=joint_colour(k), lw=1.2, label=_wrapped(text)))
+    if scene.joints.at_corner.any():
+        handles.append(
+            Line2D([], [], **CORNER, ms=3.0, label=_wrapped(f"corners on sides: {strength_at_corners(scene)}"))
+        )
     return handles
 
 

@@ -12,6 +12,7 @@ from .beam import Beam
 from .blocks import Blocks
 from .bond import Bond
 from .checks import check_built
+from .corner_contacts import with_corners
 from .cracks import cut_in_half
 from .errors import SceneError
 from .ground import strip_below, strip_reach
@@ -114,6 +115,7 @@ def build_scene(
         None if beam is None else (len(polygons), beam.joint or joint.name),
     )
     block_materials, material, no_blocks = _in_use(block_materials, material)
+    joint_materials, material_of_joint = _without_strength(joint_materials, material_of_joint, found)
     joint_materials, material_of_joint, no_joints = _in_use(joint_materials, material_of_joint)
     scene = Scene(
         title,
@@ -176,10 +178,22 @@ def _support(kind: SupportKind, blocks: Blocks, wall: Mask) -> tuple[Mask, Pins]
 
 
 def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
-    """Joints with a movable side; joints between parts of one block come last."""
+    """Joints with a movable side, then those between parts of one block, then contacts of single corners."""
     joints = find_joints(blocks)
     movable = ~fixed[joints.block].all(axis=1)
     a, b = part_of[joints.block].T
     inner = (a == b) & (a >= 0) & movable
     order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
-    return Joints(joints.block[order], joints.ends[order], inner[order])
+    return with_corners(Joints(joints.block[order], joints.ends[order], inner[order]), blocks, fixed)
+
+
+def _without_strength(
+    materials: tuple[JointMaterial, ...], of: Indices, joints: Joints
+) -> tuple[tuple[JointMaterial, ...], Indices]:
+    """Materials and the material of each joint ``(nj,)``: contacts of corners neither stick nor crush."""
+    for k in np.unique(of[joints.at_corner]).tolist():
+        material = materials[k]
+        if material.is_bonded or material.compressive_strength is not None:
+            of = np.where(joints.at_corner & (of == k), len(materials), of)
+            materials = (*materials, material.broken().never_crushing())
+    return materials, of

@@ -25,6 +25,7 @@ def check_built(scene: Scene) -> None:
     _refuse_floating_blocks(scene)
     for k, material in enumerate(scene.joint_materials):
         too_short = scene.joints.too_short_for(material.inset) & (scene.material_of_joint == k)
+        too_short &= ~scene.joints.at_corner
         if too_short.any():
             length = scene.joints.length[too_short].min()
             what = f"must be less than half the shortest joint, {length:.4g} m long"

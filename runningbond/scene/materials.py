@@ -1,7 +1,7 @@
 """Materials of blocks and joints, in SI units."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal, TypeAlias, get_args
 
 from .errors import SceneError
@@ -212,6 +212,16 @@ class JointMaterial:
     def is_bonded(self) -> bool:
         """Whether the joint has a tensile or shear strength at zero pressure."""
         return self.tension > 0.0 or self.cohesion > 0.0
+
+    def broken(self) -> "JointMaterial":
+        """A copy without cohesion and tension, with the same friction, stiffness and crushing."""
+        still = replace(self, softening="linear", fracture_energy_2=None)
+        return replace(still, cohesion=0.0, tensile_strength=None, fracture_energy_1=None)
+
+    def never_crushing(self) -> "JointMaterial":
+        """A copy with infinite compressive strength."""
+        still = replace(self, compressive_fracture_energy=None, peak_closure=0.0, cap_shear=CAP_SHEAR)
+        return replace(still, compressive_strength=None)
 
     @property
     def softens(self) -> bool:

@@ -135,6 +135,13 @@ class Scene:
         """A copy with some fields of the default joint material changed."""
         return replace(self, joint_materials=(replace(self.joint, **changes), *self.joint_materials[1:]))
 
+    def without_corner_contacts(self) -> "Scene":
+        """The scene without contacts of single corners, for models that find contacts themselves."""
+        kept = ~self.joints.at_corner
+        if kept.all():
+            return self
+        return replace(self, joints=self.joints.between_sides, material_of_joint=self.material_of_joint[kept])
+
     @cached_property
     def is_beam(self) -> Mask:
         """Whether each block is the beam, ``(nb,)``."""

@@ -20,7 +20,10 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Joints:
-    """Segments shared by two blocks.
+    """Segments shared by two blocks, and contacts of single corners.
+
+    A contact of a corner is a joint of the length of the contact tolerance, without strength, along the side that the
+    corner touches (`corner_contacts`). Such joints come last.
 
     Parameters
     ----------
@@ -30,17 +33,22 @@ class Joints:
         End points [m], in the direction of a's counter-clockwise boundary.
     inner : (nj,) bool
         Whether a joint is a potential crack inside a block of the wall; by default no joint is.
+    corner_length : (nj,) float
+        Length [m] on which the stiffness of a corner's contact is based; 0 for other joints, by default for all.
     """
 
     block: Indices
     ends: Array
     inner: Mask = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    corner_length: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "block", frozen(self.block, np.int64))
         object.__setattr__(self, "ends", frozen(self.ends))
         inner = self.inner if len(self.inner) else np.zeros(len(self.block), dtype=np.bool_)
         object.__setattr__(self, "inner", frozen(inner, np.bool_))
+        corner_length = self.corner_length if len(self.corner_length) else np.zeros(len(self.block))
+        object.__setattr__(self, "corner_length", frozen(corner_length))
 
     def __len__(self) -> int:
         return len(self.block)
@@ -50,6 +58,17 @@ class Joints:
         """Length of each joint, ``(nj,)`` [m]."""
         run = self.ends[:, 1] - self.ends[:, 0]
         return frozen(np.hypot(run[:, 0], run[:, 1]))
+
+    @cached_property
+    def at_corner(self) -> Mask:
+        """Whether each joint is the contact of a single corner, ``(nj,)``."""
+        return frozen(self.corner_length > 0, np.bool_)
+
+    @cached_property
+    def between_sides(self) -> "Joints":
+        """The joints without contacts of corners; their numbers are the same."""
+        chosen = ~self.at_corner
+        return Joints(self.block[chosen], self.ends[chosen], self.inner[chosen])
 
     @cached_property
     def is_bed(self) -> Mask:

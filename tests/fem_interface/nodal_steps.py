@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import ModalWall
-from fem_interface.operators import nodal_jump
 from runningbond.dynamics import BlockSystem
 
 from .walls import whole

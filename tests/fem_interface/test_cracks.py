@@ -10,9 +10,9 @@ from scipy.sparse.linalg import spsolve
 from fem_interface.cracks import Cracks, added_compliance, pieces
 from fem_interface.fracture import fractured
 from fem_interface.frequency_shift import modal_stiffness
+from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
-from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
 from meshing import wall_mesh
 from runningbond.draws.scatter import Scatter

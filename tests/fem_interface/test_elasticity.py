@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import modal_wall
-from fem_interface.operators import nodal_jump
 from homog import elastic_moduli
 from meshing import wall_mesh
 from runningbond.joints import lobatto

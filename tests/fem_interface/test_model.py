@@ -9,9 +9,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 
 from dem.dynamic import dem_dynamic, dem_vibration
+from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem, fem_vibration
-from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
 from meshing import wall_mesh
 from runningbond.compare import published_scene

@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import element_runs, modal_wall
 from fem_interface.modes import ModeCount, block_modes, degree_of, polynomials
-from fem_interface.operators import mass_matrix, nodal_jump, nodes_of_degree, stiffness_matrix
+from fem_interface.operators import mass_matrix, nodes_of_degree, stiffness_matrix
 from fem_interface.system import system_of
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import wall_mesh

@@ -13,9 +13,10 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementTriP1, MeshTri
 
 from dem.rigid_system import contact_points
+from fem_interface.joint_elements import joint_elements, nodal_jump
 from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import rigid_motions
-from fem_interface.operators import joint_elements, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface.operators import lumped_mass, mass_matrix, stiffness_matrix
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import wall_mesh
 from runningbond.joints import JointPoints, Rule, gauss, lobatto, wall_points

@@ -1,4 +1,4 @@
-"""Corners that touch a block without a joint: a note tells if a mechanism violates that contact."""
+"""Corners on sides bear at a point in every model; a note tells if a mechanism violates the contact of two corners."""
 
 from typing import Any
 
@@ -6,21 +6,29 @@ import numpy as np
 import pytest
 
 from runningbond import Wall
-from runningbond.models.corners import corners_on_corners, corners_on_sides
+from runningbond.models.corners import corners_on_corners
 from tests.at_length import at_length
 
-NOTE = "contact at the corner (0.4, 0) m, which touches a block without a joint, is left out"
+NOTE = "contact of the corners at (0.4, 0) m, which touch without a joint, is left out: the wall may bear more"
 IN_TWO = [
     [[-1, -0.5], [0.4, -0.5], [0.4, 0], [-1, 0]],
     [[0.4, -0.5], [2, -0.5], [2, 0.3], [0.7, 0.3], [0.4, 0]],
 ]
 """The same ground in two pieces, with corners at the toe of the block."""
 
-NOTCHED = [[-1, -0.5], [2, -0.5], [2, 0.3], [0.7, 0.3], [0.4, 0], [-1, 0]]
-"""Ground whose slope of 45° begins at the toe of a block that is 0.4 m wide."""
+FLAT = [[-1, -0.5], [2, -0.5], [2, 0], [-1, 0]]
+
+HEIGHT = 0.8
+MODELS = ["limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem"]
 
 
-def block(*outlines: list[list[float]], direction: str = "right", **changes: Any) -> Wall:
+def notched(width: float) -> list[list[float]]:
+    """Ground whose slope of 45° begins at the toe of a block of a given width."""
+    return [[-1, -0.5], [4, -0.5], [4, 0.3], [width + 0.3, 0.3], [width, 0], [-1, 0]]
+
+
+def block(*others: list[list[float]], width: float = 0.4, last: bool = False, **changes: Any) -> Wall:
+    """A block whose toe is in a notch, and other blocks; the block is numbered first, or last."""
     keys: dict[str, Any] = {
         "thickness": 0.2,
         "density": 2000.0,
@@ -28,57 +36,94 @@ def block(*outlines: list[list[float]], direction: str = "right", **changes: Any
         "friction": 0.2,
         "normal_stiffness": 1e10,
         "shear_stiffness": 1e10,
-        "ground": [NOTCHED],
-        "live": {"kind": "lateral", "direction": direction},
+        "ground": [notched(width)],
+        "live": {"kind": "lateral"},
     }
-    return Wall.outlines(list(outlines) or [[[0, 0], [0.4, 0], [0.4, 0.8], [0, 0.8]]], **keys | changes)
+    outlines = [[[0, 0], [width, 0], [width, HEIGHT], [0, HEIGHT]], *others]
+    return Wall.outlines(outlines[::-1] if last else outlines, **keys | changes)
+
+
+def sliding_out(friction: float, width: float) -> float:
+    """λ at which a block slides out of the notch: it bears on its toe, on the slope, and on its heel.
+
+    With N and the friction μ N at both, λ W = k (W - N_heel) + μ N_heel from the forces, k = (1 + μ) / (1 - μ), and
+    N_heel b = W b / 2 - λ W h / 2 from the moments about the toe.
+    """
+    k, arm = (1 + friction) / (1 - friction), HEIGHT / (2 * width)
+    return (k + friction) / 2 / (1 - (k - friction) * arm)
+
+
+def check_bracket(wall: Wall, model: str, exact: float) -> None:
+    result = wall.run(model)
+    assert result.status == "collapse"
+    assert result.lower is not None
+    assert result.lower <= exact * (1 + 1e-6)
+    assert result.upper == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_toe_in_a_notch_topples(model: str) -> None:
+    """λ = b / h, although the bed joint slides at 0.2; `test_reentrant` is the same at finite displacements."""
+    check_bracket(block(), model, 0.5)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_block_slides_out_of_its_notch(model: str, friction: float) -> None:
+    check_bracket(block(width=1.2, friction=friction), model, sliding_out(friction, 1.2))
+
+
+LEANING = [[0.4, 0.2], [0.55, 0.15], [0.7, 0.3]]
+"""A stone on the slope, whose tip touches the block's side."""
+
+
+@pytest.mark.parametrize("model", ["limit", "dem-dynamic", *at_length("dem-static", "fem")])
+def test_contacts_do_not_depend_on_the_order_of_blocks(model: str) -> None:
+    """The corner is the stone's, or the block's in the notch: of the higher and of the lower number."""
+    lower = [block(LEANING, last=last).run(model).lower or 0.0 for last in (False, True)]
+    assert lower[0] == pytest.approx(lower[1], rel=1e-6)
+    assert lower[0] > 0.51  # the block cannot topple without lifting the stone
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_glued_joints_give_corners_no_strength(model: str) -> None:
+    """Pushed to the left, the toe leaves the slope, which must not hold it."""
+    glued: dict[str, Any] = {"friction": 0.2, "cohesion": 1e4, "tensile_strength": 1e3}
+    away = {"kind": "lateral", "direction": "left"}
+    notched_off, flat = (block(live=away, ground=[ground], **glued).run(model) for ground in (notched(0.4), FLAT))
+    assert notched_off.lower == pytest.approx(flat.lower, rel=0.01)  # a joint as strong as the bed's adds 6 %
+
+
+@pytest.mark.long
+def test_cracks_between_triangles_keep_corner_contacts() -> None:
+    """The piece with the toe bears on the slope."""
+    strong = {"friction": 1.0, "cohesion": 1e7, "tensile_strength": 5e6}
+    inner = {**strong, "normal_stiffness": 1e13, "shear_stiffness": 1e13}
+    result = block(inner_joint=inner).run("fem", cracks="blocks")
+    assert result.upper == pytest.approx(0.5, rel=0.01)
 
 
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-dynamic", *at_length("dem-static", "fem")])
-def test_toe_that_slides_into_the_slope_of_its_notch_is_told(model: str) -> None:
-    """λ = tan φ = 0.2 at small displacements; at finite ones the block topples at b / h = 0.5 (`test_reentrant`)."""
-    result = block().run(model)
+def test_contact_of_two_corners_is_told(model: str) -> None:
+    """Where the ground is cut at the toe, the block slips at λ = tan φ = 0.2 past the corner of the other piece."""
+    result = block(ground=IN_TWO).run(model)
     assert result.lower == pytest.approx(0.2, rel=0.01)
-    assert f"{NOTE}: the wall may bear more" in result.message
-    assert NOTE in block(ground=IN_TWO).run(model).message
+    assert NOTE in result.message
 
 
-def test_nothing_is_told_of_toes_that_stay_or_move_away() -> None:
-    assert NOTE not in block(direction="left").run("limit").message
-    topples = block(friction=1.0).run("limit")
+def test_nothing_is_told_of_corners_that_stay_or_move_away() -> None:
+    away = block(ground=IN_TWO, live={"kind": "lateral", "direction": "left"})
+    assert NOTE not in away.run("limit").message
+    topples = block(ground=IN_TWO, friction=1.0).run("limit")
     assert topples.lower == pytest.approx(0.5)
     assert NOTE not in topples.message
-
-
-def test_corners_in_notches_and_on_sides_have_no_joints() -> None:
-    """The toe is in the notch of the ground, and a tip of the stone on the slope touches the block's side."""
-    leaning = [[0.4, 0.2], [0.55, 0.15], [0.7, 0.3]]
-    wall = block([[0, 0], [0.4, 0], [0.4, 0.8], [0, 0.8]], leaning)
-    corner, side, _ = corners_on_sides(wall.scene)
-    blocks = wall.scene.blocks
-    touching = zip(blocks.vertices[corner].tolist(), blocks.owner[corner], blocks.owner[side], strict=True)
-    assert sorted(touching) == [([0.4, 0.0], 0, 2), ([0.4, 0.2], 1, 0)]
-
-
-def test_bonded_walls_have_joints_wherever_blocks_touch() -> None:
-    wall = Wall.running_bond(
-        length=2.0,
-        height=1.0,
-        block_width=0.4,
-        block_height=0.2,
-        thickness=0.2,
-        density=2000.0,
-        friction=0.6,
-        live={"kind": "lateral"},
-    )
-    assert not len(corners_on_sides(wall.scene).corner)
-    assert not len(corners_on_corners(wall.scene).corner)
 
 
 def test_corners_that_meet_crosswise_touch_along_either_side() -> None:
     """Four squares at a point: of each diagonal pair, two sides of each block keep them apart."""
     squares = [[[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]] for y in (0.0, 1.0) for x in (0.0, 1.0)]
-    scene = block(*squares, ground=[[[-1, -1], [3, -1], [3, 0], [-1, 0]]]).scene
+    keys: dict[str, Any] = {"thickness": 0.2, "density": 2000.0, "friction": 0.2, "live": {"kind": "lateral"}}
+    scene = Wall.outlines(squares, [[[-1, -1], [3, -1], [3, 0], [-1, 0]]], **keys).scene
     corner, side, place = corners_on_corners(scene)
     assert (scene.blocks.vertices[corner] == 1.0).all()
     assert np.bincount(place).tolist() == [4, 4]

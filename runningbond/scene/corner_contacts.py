@@ -1,0 +1,85 @@
+"""Contacts of corners that touch a side of another block without sharing a segment with it.
+
+A corner may lie on a side between its ends, or in a notch, where it touches both sides. Corners of two blocks that meet
+in a point have no normal, and no contact.
+"""
+
+import numpy as np
+import shapely
+
+from .arrays import Array, Indices, Mask
+from .blocks import Blocks
+from .segments import Joints
+
+PARALLEL = 1e-3
+"""Sine of the angle between a joint and a side up to which the joint lies on that side."""
+
+
+def with_corners(joints: Joints, blocks: Blocks, fixed: Mask) -> Joints:
+    """Joints, and after them the contacts of corners of which a block moves.
+
+    Each stands for half of the shortest of the corner's two sides and the side that it touches, as a joint in running
+    bond stands for half a block.
+    """
+    owner, start = blocks.owner, blocks.vertices
+    run = start[blocks.successor] - start
+    if (np.abs(run).min(axis=1) <= blocks.tolerance).all():
+        return joints  # between level and upright sides corners always lie at ends of joints
+    corner, side = corners_on_sides(joints, blocks, fixed)
+    if not len(corner):
+        return joints
+    length = np.hypot(*run.T)
+    before = np.empty_like(blocks.successor)
+    before[blocks.successor] = np.arange(len(before))
+    half = np.minimum.reduce([length[side], length[corner], length[before[corner]]]) / 2
+    a_has_corner = owner[corner] < owner[side]
+    # The normal points out of block a: along the side if that is a's, against it if the corner is.
+    reach = (np.where(a_has_corner, -1.0, 1.0) * blocks.tolerance / 2 / length[side])[:, None] * run[side]
+    ends = start[corner][:, None] + np.stack([-reach, reach], axis=1)
+    none = np.zeros(len(corner), dtype=np.bool_)
+    return Joints(
+        np.concatenate([joints.block, np.sort(owner[np.column_stack([corner, side])], axis=1)]),
+        np.concatenate([joints.ends, ends]),
+        np.concatenate([joints.inner, none]),
+        np.concatenate([joints.corner_length, half]),
+    )
+
+
+def corners_on_sides(joints: Joints, blocks: Blocks, fixed: Mask) -> tuple[Indices, Indices]:
+    """Corners that touch sides of other blocks without a joint there, and these sides, two ``(n,)``."""
+    owner, corners, reach = blocks.owner, blocks.vertices, blocks.tolerance
+    ends = np.column_stack([np.arange(len(owner)), blocks.successor])
+    sides = corners[ends]
+    tree = shapely.STRtree(shapely.points(corners))
+    side, corner = tree.query(shapely.linestrings(sides), predicate="dwithin", distance=reach)
+    away = np.hypot(*np.moveaxis(sides[side] - corners[corner][:, None], 2, 0))
+    touches = ((away > reach) | blocks.reentrant[ends[side]]).all(axis=1) & ~blocks.reentrant[corner]
+    touches &= can_part(blocks, fixed, corner, side)
+    side, corner = side[touches], corner[touches]
+    # A joint lies on that side if it is between the same blocks, touches the corner and is parallel to the side.
+    near, joint = joints_at(joints, blocks, corner, side)
+    (x, y), (u, v) = _directions(sides[side[near]]).T, _directions(joints.ends[joint]).T
+    alone = ~np.isin(np.arange(len(corner)), near[np.abs(x * v - y * u) <= PARALLEL])
+    return corner[alone], side[alone]
+
+
+def can_part(blocks: Blocks, fixed: Mask, first: Indices, second: Indices) -> Mask:
+    """Whether corners or sides ``(n,)`` belong to two blocks of which at least one moves."""
+    a, b = blocks.owner[first], blocks.owner[second]
+    return np.asarray((a != b) & ~(fixed[a] & fixed[b]))
+
+
+def joints_at(joints: Joints, blocks: Blocks, corner: Indices, other: Indices) -> tuple[Indices, Indices]:
+    """Numbers of corners ``(n,)``, and of the joints that touch them, of the same blocks as them and the `other`."""
+    points = shapely.points(blocks.vertices[corner])
+    tree = shapely.STRtree(shapely.linestrings(joints.ends))
+    near, joint = tree.query(points, predicate="dwithin", distance=blocks.tolerance)
+    owners = blocks.owner[np.column_stack([corner, other])][near]
+    own = (np.sort(joints.block[joint]) == np.sort(owners)).all(axis=1)
+    return near[own], joint[own]
+
+
+def _directions(segments: Array) -> Array:
+    """Unit vectors ``(n, 2)`` along segments ``(n, 2, 2)``."""
+    run = segments[:, 1] - segments[:, 0]
+    return np.asarray(run / np.hypot(*run.T)[:, None])

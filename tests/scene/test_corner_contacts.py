@@ -1,0 +1,92 @@
+"""Contacts of single corners: where they are, and that every model sees the same jumps there."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fem_interface.joint_elements import PointsOn, joint_elements, nodal_jump
+from meshing import wall_mesh
+from runningbond import Wall
+from runningbond.joints import lobatto, wall_points, wall_strength
+from runningbond.limit.kinematics import jump_operator
+from runningbond.scene import Scene
+from tests.models.test_corners import LEANING, block
+
+
+def leaning(**changes: Any) -> Scene:
+    """A block whose toe is in the notch of the ground, and a stone on the slope whose tip touches the block's side."""
+    return block(LEANING, **changes).scene
+
+
+def test_corners_touch_sides_in_notches_and_between_ends() -> None:
+    joints = leaning().joints
+    assert joints.at_corner.tolist() == [False, False, True, True]
+    middles = joints.ends[joints.at_corner].mean(axis=1).tolist()
+    assert sorted(zip(middles, joints.block[joints.at_corner].tolist(), strict=True)) == [
+        ([0.4, pytest.approx(0.0, abs=1e-12)], [0, 2]),
+        ([pytest.approx(0.4), pytest.approx(0.2)], [0, 1]),
+    ]
+
+
+def test_normals_point_out_of_the_first_block() -> None:
+    """Out of the block's right side to the right, and from the block down into the slope."""
+    scene = leaning()
+    points = wall_points(scene)
+    normals = {
+        tuple(points.block[k].tolist()): points.normal[k] for k in np.flatnonzero(scene.joints.at_corner[points.joint])
+    }
+    assert normals[0, 1] == pytest.approx([1.0, 0.0])
+    assert normals[0, 2] == pytest.approx(np.array([1.0, -1.0]) / np.sqrt(2))
+
+
+def test_bonded_walls_have_joints_wherever_blocks_touch() -> None:
+    keys: dict[str, Any] = {
+        "block_width": 0.4,
+        "block_height": 0.2,
+        "thickness": 0.2,
+        "density": 2000.0,
+        "friction": 0.6,
+    }
+    wall = Wall.running_bond(length=2.0, height=1.0, friction=0.6, live={"kind": "lateral"}, **keys)
+    assert not wall.scene.joints.at_corner.any()
+
+
+def test_corners_have_friction_alone_and_the_stiffness_of_half_a_side() -> None:
+    scene = leaning(cohesion=1e5, tensile_strength=1e4, compressive_strength=1e6, inset=0.01)
+    points = wall_points(scene)
+    single = scene.joints.at_corner[points.joint]
+    strength = wall_strength(scene, points)
+    assert not strength.tension[single].any()
+    assert not strength.shear[single].any()
+    assert (strength.friction == 0.2).all()
+    assert (strength.tension[~single] > 0).all()
+    crush = [scene.joint_materials[k].compressive_strength for k in scene.material_of_joint]
+    assert crush == [1e6, 1e6, None, None]
+    by_pair = {
+        tuple(pair): length
+        for pair, length in zip(scene.joints.block.tolist(), scene.joints.corner_length, strict=True)
+    }
+    assert by_pair[0, 1] == pytest.approx(np.hypot(0.15, 0.05) / 2)
+    assert points.area[single].sum() == pytest.approx(scene.thickness * scene.joints.corner_length.sum())
+
+
+@pytest.mark.parametrize("points", ["elements", "joints"])
+@pytest.mark.parametrize("cells", [1, 3])
+def test_elements_see_the_jumps_of_rigid_blocks(points: PointsOn, cells: int) -> None:
+    """A rigid motion of the blocks, given at the nodes, opens and shears corners as between rigid blocks."""
+    scene = leaning()
+    motion = np.random.default_rng(3).normal(size=(len(scene.blocks), 3))
+    mesh = wall_mesh(scene, cells)
+    assert not scene.joints.at_corner[mesh.joint].any()
+    x, y = (mesh.points - scene.blocks.centroid[mesh.block]).T
+    u, v, turn = motion[mesh.block].T
+    elements = joint_elements(mesh, scene, lobatto(), points)
+    jump = nodal_jump(elements, len(mesh.points))
+    ours = wall_points(scene)
+    rigid = jump_operator(ours, scene.blocks.centroid)
+    nodes = np.column_stack([u - turn * y, v + turn * x]).ravel()
+    for at_nodes, at_blocks in ((jump.opening, rigid.opening), (jump.slip, rigid.slip)):
+        found = (at_nodes @ nodes)[elements.points.joint >= 2]
+        expected = (at_blocks @ motion.ravel())[ours.joint >= 2]
+        assert np.sort(found) == pytest.approx(np.sort(expected), abs=1e-6)
