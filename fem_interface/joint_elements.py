@@ -12,7 +12,7 @@ from skfem import ElementTriP1, FacetBasis, MeshTri
 
 from meshing import WallMesh
 from runningbond.joints import JointPoints, Rule, wall_inset, wall_rule
-from runningbond.joints.wall_points import CORNER_INSET
+from runningbond.joints.wall_points import CORNER_INSET, bearing_thickness
 from runningbond.limit.kinematics import Jump
 from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 from runningbond.scene.ranges import one_of
@@ -160,7 +160,7 @@ def _corner_rows(mesh: WallMesh, scene: Scene, rule: Rule, n: int) -> JointRows:
     # The corner's own node is both ends, with whatever weights: those of the other block's edge are needed.
     at_node = a.nodes[:, 0] == a.nodes[:, 1]
     weights = np.where(at_node[:, None], b.weights, a.weights)
-    area = (scene.thickness_of_joints * scene.joints.corner_length)[single]
+    area = (bearing_thickness(scene) * scene.joints.corner_length)[single]
     times = len(rule.nodes) // n
     of_row = np.repeat(np.arange(len(single)), times)
     part, along = (np.tile(each, len(single)).reshape(-1, n) for each in (rule.weights / 2, rule.nodes))

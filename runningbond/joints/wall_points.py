@@ -23,7 +23,17 @@ CORNER_INSET = 0.4995
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
     """Place a quadrature rule on every joint of a scene, with its ends moved in by the joint's inset."""
-    return joint_points(scene.joints, scene.thickness_of_joints, rule, wall_inset(scene))
+    return joint_points(scene.joints, bearing_thickness(scene), rule, wall_inset(scene))
+
+
+def bearing_thickness(scene: Scene) -> Array:
+    """Thickness of joints [m], ``(nj,)``; that of a corner's contact is reduced where joints have points along them.
+
+    A block that rocks on such a joint bears on its last point alone, with a small part of the area. A corner on a side
+    is as soft, and so are corners at finite displacements.
+    """
+    at_end = float(wall_rule(scene).weights[0])
+    return np.where(scene.joints.at_corner, at_end, 1.0) * scene.thickness_of_joints
 
 
 def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:

@@ -15,12 +15,12 @@ PARALLEL = 1e-3
 """Sine of the angle between a joint and a side up to which the joint lies on that side."""
 
 
-def with_corners(joints: Joints, blocks: Blocks, fixed: Mask) -> Joints:
-    """Joints, and after them the contacts of corners of which a block moves.
+LEAST_OVERLAP = 1e-2
+"""Least overlap of a leaning side, relative to the shorter one of the two sides."""
 
-    Each stands for half of the shortest of the corner's two sides and the side that it touches, as a joint in running
-    bond stands for half a block.
-    """
+
+def with_corners(joints: Joints, blocks: Blocks, fixed: Mask) -> Joints:
+    """Joints, and after them the contacts of corners of which a block moves."""
     owner, start = blocks.owner, blocks.vertices
     run = start[blocks.successor] - start
     if (np.abs(run).min(axis=1) <= blocks.tolerance).all():
@@ -28,21 +28,34 @@ def with_corners(joints: Joints, blocks: Blocks, fixed: Mask) -> Joints:
     corner, side = corners_on_sides(joints, blocks, fixed)
     if not len(corner):
         return joints
-    length = np.hypot(*run.T)
-    before = np.empty_like(blocks.successor)
-    before[blocks.successor] = np.arange(len(before))
-    half = np.minimum.reduce([length[side], length[corner], length[before[corner]]]) / 2
-    a_has_corner = owner[corner] < owner[side]
+    along = run[side] / np.hypot(*run[side].T)[:, None]
     # The normal points out of block a: along the side if that is a's, against it if the corner is.
-    reach = (np.where(a_has_corner, -1.0, 1.0) * blocks.tolerance / 2 / length[side])[:, None] * run[side]
-    ends = start[corner][:, None] + np.stack([-reach, reach], axis=1)
-    none = np.zeros(len(corner), dtype=np.bool_)
+    reach = np.where(owner[corner] < owner[side], -0.5, 0.5)[:, None] * blocks.tolerance * along
     return Joints(
         np.concatenate([joints.block, np.sort(owner[np.column_stack([corner, side])], axis=1)]),
-        np.concatenate([joints.ends, ends]),
-        np.concatenate([joints.inner, none]),
-        np.concatenate([joints.corner_length, half]),
+        np.concatenate([joints.ends, start[corner][:, None] + np.stack([-reach, reach], axis=1)]),
+        np.concatenate([joints.inner, np.zeros(len(corner), dtype=np.bool_)]),
+        np.concatenate([joints.corner_length, _bearing(blocks, corner, side, run, along)]),
     )
+
+
+def _bearing(blocks: Blocks, corner: Indices, side: Indices, run: Array, along: Array) -> Array:
+    """Length ``(n,)`` [m] that the contacts of corners on sides stand for: that of the end of a joint.
+
+    As at finite displacements it is half of the overlap, along the side, of the corner's own side that leans less on
+    it, and at most a quarter of the shorter one of the two.
+    """
+    before = np.empty_like(blocks.successor)
+    before[blocks.successor] = np.arange(len(before))
+    length, own = np.hypot(*run.T), np.column_stack([corner, before[corner]])
+    leans = np.abs(run[own, 0] * along[:, None, 1] - run[own, 1] * along[:, None, 0]) / length[own]
+    chosen = np.argmin(leans, axis=1)
+    facing = own[np.arange(len(own)), chosen]
+    projected = np.where(chosen == 0, 1.0, -1.0) * (run[facing] * along).sum(axis=1)
+    at = ((blocks.vertices[corner] - blocks.vertices[side]) * along).sum(axis=1)
+    overlap = np.abs(np.clip(at + projected, 0.0, length[side]) - at)
+    shorter = np.minimum(length[facing], length[side])
+    return np.asarray(np.clip(overlap, LEAST_OVERLAP * shorter, shorter / 2) / 2)
 
 
 def corners_on_sides(joints: Joints, blocks: Blocks, fixed: Mask) -> tuple[Indices, Indices]:

@@ -73,7 +73,7 @@ def test_block_slides_out_of_its_notch(model: str, friction: float) -> None:
     check_bracket(block(width=1.2, friction=friction), model, sliding_out(friction, 1.2))
 
 
-LEANING = [[0.4, 0.2], [0.55, 0.15], [0.7, 0.3]]
+LEANING = [[0.4, 0.2], [0.5, 0.1], [0.65, 0.25]]
 """A stone on the slope, whose tip touches the block's side."""
 
 

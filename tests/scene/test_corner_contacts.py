@@ -8,7 +8,9 @@ import pytest
 from fem_interface.joint_elements import PointsOn, joint_elements, nodal_jump
 from meshing import wall_mesh
 from runningbond import Wall
-from runningbond.joints import lobatto, wall_points, wall_strength
+from runningbond.contacts.outline import Outline
+from runningbond.contacts.search import find_contacts, jumps
+from runningbond.joints import lobatto, wall_points, wall_rule, wall_strength
 from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Scene
 from tests.models.test_corners import LEANING, block
@@ -46,13 +48,12 @@ def test_bonded_walls_have_joints_wherever_blocks_touch() -> None:
         "block_height": 0.2,
         "thickness": 0.2,
         "density": 2000.0,
-        "friction": 0.6,
     }
     wall = Wall.running_bond(length=2.0, height=1.0, friction=0.6, live={"kind": "lateral"}, **keys)
     assert not wall.scene.joints.at_corner.any()
 
 
-def test_corners_have_friction_alone_and_the_stiffness_of_half_a_side() -> None:
+def test_corners_have_friction_alone_and_the_area_of_the_end_of_a_joint() -> None:
     scene = leaning(cohesion=1e5, tensile_strength=1e4, compressive_strength=1e6, inset=0.01)
     points = wall_points(scene)
     single = scene.joints.at_corner[points.joint]
@@ -63,12 +64,22 @@ def test_corners_have_friction_alone_and_the_stiffness_of_half_a_side() -> None:
     assert (strength.tension[~single] > 0).all()
     crush = [scene.joint_materials[k].compressive_strength for k in scene.material_of_joint]
     assert crush == [1e6, 1e6, None, None]
-    by_pair = {
-        tuple(pair): length
-        for pair, length in zip(scene.joints.block.tolist(), scene.joints.corner_length, strict=True)
-    }
-    assert by_pair[0, 1] == pytest.approx(np.hypot(0.15, 0.05) / 2)
-    assert points.area[single].sum() == pytest.approx(scene.thickness * scene.joints.corner_length.sum())
+    of_end = wall_rule(scene).weights[0] * scene.thickness * scene.joints.corner_length.sum()
+    assert points.area[single].sum() == pytest.approx(of_end)
+
+
+@pytest.mark.parametrize("softening", [{}, {"cohesion": 1e4, "fracture_energy_1": 10.0, "fracture_energy_2": 50.0}])
+def test_areas_are_those_at_finite_displacements(softening: dict[str, float]) -> None:
+    """There, leaning sides overlap, and touch at the first of the points along them; here the corner is the contact."""
+    scene = leaning(**softening)
+    outline = Outline.of(scene)
+    found = find_contacts(outline, np.zeros(3 * len(scene.blocks)), outline.margin)
+    opening, _ = jumps(outline, found, found.motion)
+    touching = (found.joint < 0) & (np.abs(opening) < scene.blocks.tolerance)
+    end = wall_rule(scene).weights[0]
+    points = wall_points(scene)
+    area = np.bincount(points.joint, points.area)[scene.joints.at_corner]
+    assert np.sort(area) == pytest.approx(np.sort(found.area[touching]) * end)
 
 
 @pytest.mark.parametrize("points", ["elements", "joints"])
