@@ -146,7 +146,7 @@ def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, par
     """Run a model on a wall, as documented in `Wall.run`."""
     model = find_model(model)
     check_parameters(model, parameters)  # some may have the names of parameters of `run_model`
-    warn_of_likely_slips([wall.scene], stacklevel=4)
+    warn_of_likely_slips([wall.scene])
     recorder = model.observer(wall.scene, None) if states and model.observer else None
     outcome = run_model(model, wall.scene, tolerance, recorder, **parameters)
     if recorder is None:

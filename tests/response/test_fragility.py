@@ -80,6 +80,18 @@ def test_each_record_counts_once(tmp_path: Path) -> None:
         rb.fragility(rb.read(tmp_path / "wall.toml"), ["a.csv", str(tmp_path / "a.csv")], "dem-dynamic")
 
 
+def test_likely_input_errors_are_warned_about_at_the_calling_line(tmp_path: Path) -> None:
+    """The line was once one of the package, so that Python showed the warnings of the first wall alone."""
+    for name, peak in (("a.csv", 1), ("b.csv", 2)):
+        (tmp_path / name).write_text(f"0 0\n0.1 {peak}\n0.2 0\n")
+    history = {"file": str(tmp_path / "a.csv"), "quantity": "g"}
+    wall = rb.read("panel-01").with_({"load.history": history, "load.live": None, "block.density": 1.8})
+    records, odd = [tmp_path / "a.csv", tmp_path / "b.csv"], "block.density = 1.8: is not within"
+    with pytest.warns(UserWarning, match=odd) as told, pytest.raises(rb.SceneError, match="by model limit"):
+        rb.fragility(wall, records, "limit", jobs=1)
+    assert [Path(each.filename) for each in told] == [Path(__file__)]
+
+
 def test_records_without_collapse_count_as_lower_bounds() -> None:
     """A log-normal sample censored at a level returns its median and dispersion; dropping the rest does not."""
     n, median, dispersion = 400, 0.5, 0.4
