@@ -6,7 +6,7 @@ what may have been meant.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -70,6 +70,10 @@ UNREAL_YIELD_STRESS = 5e9
 """Stress [Pa] that no real tie reaches: if yield force / area is above it, a stress was probably given as `yield`."""
 LOW_YIELD_STRESS = 1e6
 """Stress [Pa] at which no real tie yields: if yield force / area is below it, `yield` was probably given in kN."""
+
+LEAST_FORCES, LEAST_SHARE = 1e3, 0.1
+"""Sum of all constant forces [N], and its share of the wall's weight, below both of which they were probably given in
+kN."""
 
 SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
 GRAVITY = Plausible(9.3, 10.3, "m/s²")
@@ -169,6 +173,16 @@ def _sizes(scene: Scene) -> Iterator[str]:
     if moved > LARGEST_SETTLEMENT * longest:
         along = "" if farthest == 1 else ", largest along path"
         yield f"load.live.by{along} = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
+
+
+def _constant_forces(scene: Scene) -> Iterator[str]:
+    """Warn about forces on the wall that are small beside its weight; accelerations and moments are no forces."""
+    forces = {key: load.forces(scene).force for key, load in replace(scene.load, live=()).named()}
+    forces = {key: force for key, force in forces.items() if force.any()}
+    total = sum(float(np.hypot(*force.T).sum()) for force in forces.values())
+    weight = float(scene.mass[scene.masonry].sum() * np.hypot(*scene.load.gravity))
+    if 0 < total < min(LEAST_FORCES, LEAST_SHARE * weight):
+        yield f"{' and '.join(forces)}: {total:.3g} N is only {total / weight:.1%} of the wall's weight; are kN meant?"
 
 
 def _ties(scene: Scene) -> Iterator[str]:
@@ -282,4 +296,4 @@ def _head_joints(scene: Scene) -> Iterator[str]:
         yield f"wall: no head joint: blocks that stand side by side are up to {gap} apart, and nowhere touch"
 
 
-CHECKS = (_sizes, _materials, _ties, _beam, _shaking, _courses, _head_joints)
+CHECKS = (_sizes, _materials, _constant_forces, _ties, _beam, _shaking, _courses, _head_joints)

@@ -50,6 +50,13 @@ def beam(height: float, moves: float | None = None) -> dict[str, Any]:
     return {"beam": {"height": height, "force": [0.0, -1e3], **drive}} | ({"load__live": None} if drive else {})
 
 
+def pressed(force: float, dead: float = 0.0) -> dict[str, Any]:
+    """A panel of 2.2 kN under a beam's force, and under a line load on 1.44 m."""
+    line = {"kind": "line", "from": [0.0, 0.72], "to": [1.44, 0.72], "force": [0.0, -dead]}
+    beams = {"beam": {"height": 0.2, "force": [0.0, -force]}} if force else {}
+    return beams | ({"load__dead": [line]} if dead else {})
+
+
 def settles(by: float, path: list[float] | None = None) -> dict[str, Any]:
     live = {"kind": "settlement", "box": [[0.0, -1.0], [0.72, 0.1]], "by": [0.0, -by]}
     return {"load__live": live if path is None else live | {"path": path}}
@@ -93,6 +100,8 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (tie(2.1e11, to=1.45), "tie[0].to = [1.45, 0.7]: is an anchor * 0.01 m beside the wall", tie(2.1e11, to=2.0)),
         (beam(250.0), "beam.height = 250: is more than the wall's size, 1.44 m; are mm meant?", beam(0.25)),
         (beam(0.2, 10.0), "beam.drive.displacement = 10: is more than", beam(0.2, 0.01)),
+        (pressed(30.0), "beam.force: 30 N * 1.4% of the wall's weight; are kN meant?", pressed(3e4)),
+        (pressed(0.0, 20.0), "load.dead: 28.8 N * are kN meant?", pressed(0.0, 2e4)),
         (settles(2.0), "load.live.by = 2: moves a support by more than a tenth", settles(0.02)),
         (
             settles(0.01, [1.0, -100.0, 0.0]),
