@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from runningbond.scene.plausibility import warnings
+
 from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
-from .rig import driven_path, load_in_name, vertical_load
+from .rig import Features, driven_path, load_in_name, scene_of, vertical_load
 from .scores import goes_to_both_sides
 from .stones import find_stone
 
@@ -24,6 +26,7 @@ SAME_PEAK = 0.05
 def notes_on(wall: MeasuredWall) -> list[str]:
     """What a reader of a wall's scores needs to know of its data, in one line each."""
     kinds = (
+        _likely_slips,
         _misspelt,
         _nothing_measured,
         _unknown_modes,
@@ -36,6 +39,13 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _other_peak,
     )
     return [note for kind in kinds for note in kind(wall)]
+
+
+def _likely_slips(wall: MeasuredWall) -> list[str]:
+    """What `runningbond run` would say of the wall's scene with all of its features."""
+    scene = scene_of(wall, Features(closes=True, crushes=True, splits=True))
+    place = "" if wall.scene_file else "in the scene of its row, "
+    return [f"{place}{line}" for line in (*scene.notes, *warnings(scene))]
 
 
 def _misspelt(wall: MeasuredWall) -> list[str]:

@@ -798,6 +798,21 @@ def test_misspelt_columns_are_noted(head: str, unread: str, cell: str, meant: st
     assert len(told) == (meant.startswith(("Vmax", "From")))  # its scene has the loads
 
 
+def test_likely_slips_of_scenes_are_noted(tmp_path: Path) -> None:
+    """A beam pressed by 175 N for 175 kN was once predicted to rock under nothing, without a word."""
+    wall = one(tmp_path)
+    tables = _tables(wall, ALL)
+    tables["beam"]["force"] = [0, -175]
+    tables["joint"]["compressive_strength"] = 73
+    write_toml(tables, tmp_path / "WS.175.toml")
+    strength, force = notes_on(read_folder(tmp_path)[0])
+    assert strength.startswith("joint.compressive_strength = 73: is not within 10000 … 1e+10 Pa; is 73 MPa meant")
+    assert force == "beam.force: 175 N is only 3.6% of the wall's weight; are kN meant?"
+    thin = one(tmp_path / "thin", GRANITE.replace(",200,1325", ",0.2,1325"))
+    (said,) = notes_on(thin)
+    assert said.startswith("in the scene of its row, wall.thickness = 0.0002: is odd for blocks")
+
+
 def test_wall_of_which_nothing_was_measured_is_noted(tmp_path: Path) -> None:
     folder = write_folder(tmp_path, GRANITE.replace(",61,", ",,"))
     assert notes_on(read_folder(folder)[0]) == []
