@@ -203,6 +203,8 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
             what = f"has a largest force of {largest:.3g} N, and the table one of {told:.3g} N; are their units right?"
             raise SceneError(f"{name}.csv", what)
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
+    if wall.is_cyclic:
+        wall = replace(wall, curve=_from_rest(curve))
     if _is_pushed_left(wall):
         wall = replace(wall, curve=-curve, is_turned=True)
     return replace(wall, peaks=_peaks(wall, *printed))
@@ -236,6 +238,19 @@ def _is_pushed_left(wall: MeasuredWall) -> bool:
     """Whether a wall was pushed to the negative side: to the positive side only by noise or, if monotonic, less far."""
     right, left = wall.reach
     return left * NOISE > right or (left > right and not wall.is_cyclic)
+
+
+def _from_rest(curve: Array) -> Array:
+    """A curve, if it is an envelope that leads from one side to the other, as two parts that go outward from rest."""
+    known = curve[~np.isnan(curve[:, 0])]
+    if len(known) and known[0, 0] > known[-1, 0]:
+        known = known[::-1]
+    moved, force = known.T
+    if not (
+        moved.min(initial=0) < 0 < moved.max(initial=0) and (np.diff(moved) >= 0).all() and (moved * force >= 0).all()
+    ):
+        return curve
+    return np.concatenate([known[moved >= 0], np.full((1, 2), np.nan), known[moved <= 0][::-1]])
 
 
 def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -> tuple[float, ...]:

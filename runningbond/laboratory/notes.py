@@ -7,7 +7,7 @@ from runningbond.scene.plausibility import warnings
 from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
 from .rig import Features, driven_path, load_in_name, scene_of, vertical_load
-from .scores import goes_to_both_sides
+from .scores import goes_to_both_sides, is_envelope
 from .stones import find_stone
 
 LOWER = 0.02
@@ -31,6 +31,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _nothing_measured,
         _unknown_modes,
         _missing_cycles,
+        _envelope,
         _load_of_name,
         _other_stone,
         _low_force,
@@ -79,6 +80,12 @@ def _missing_cycles(wall: MeasuredWall) -> list[str]:
         return []
     what = f"the test was cyclic, but {wall.scene_file.name} pushes the wall to one side"
     return [f"{what}; only the strength of that side is comparable"]
+
+
+def _envelope(wall: MeasuredWall) -> list[str]:
+    """A record of a cyclic test that is the envelope of its cycles."""
+    what = "the record is an envelope without cycles; models push the wall once to each side, and no work is compared"
+    return [what] if wall.is_cyclic and wall.scene_file is None and is_envelope(wall.curve) else []
 
 
 def _load_of_name(wall: MeasuredWall) -> list[str]:

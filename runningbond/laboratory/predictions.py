@@ -135,6 +135,8 @@ class Prediction:
             for key in ("stiffness", "at_peak", "at_loss", "residual")
             for end, marks in (("", own), ("_measured", test))
         }
+        if goes_to_both_sides(self.wall.path) != goes_to_both_sides(self.scene.drive_path):
+            over["stiffness_ratio"] = None  # secants of one side and of both
         energy = energy_ratio(own.loops, test.loops) if own and test else None
         return {
             "wall": self.wall.name,

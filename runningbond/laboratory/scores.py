@@ -36,7 +36,7 @@ class Marks:
         Largest force [N]; for a curve to both sides, the mean of both.
     stiffness
         Secant at 0.3 of the strength [N/m]; for a curve to both sides, that of the first branch from one side to the
-        other.
+        other, or of its two envelopes together if there is none.
     at_peak, at_loss
         Displacements [m] at the largest force, and where the force has first fallen to 0.8 of it, on the side pushed to
         first; for a curve to both sides, where it has finally fallen so far.
@@ -77,8 +77,9 @@ def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
         return None
     strength = float(np.mean(peaks))
     force = SECANT * strength
-    reach = _first_reversal(curve, force) if cyclic else first_crossing(sides[0], force)
-    stiffness = (2 if cyclic else 1) * force / reach if reach is not None and reach > 0 else None
+    branch = _first_reversal(curve, force) if cyclic else None
+    reaches = [first_crossing(side, force) for side in sides] if branch is None else [branch / 2, branch / 2]
+    stiffness = _secant(force, reaches)
     first = sides[0]
     top = int(first[:, 1].argmax())
     after, borne = first[top:], LOSS * float(first[top, 1])
@@ -89,6 +90,12 @@ def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
     loss = first_crossing(after * (1, -1), -borne)
     both = (tuple(loops(curve)), residual(curve)) if cyclic else ((), None)
     return Marks(strength, stiffness, float(first[top, 0]), loss, *both)
+
+
+def _secant(force: float, reaches: Sequence[float | None]) -> float | None:
+    """Mean secant stiffness to a force that is reached at some displacements, one on each side; else None."""
+    reached = [reach for reach in reaches if reach is not None and reach > 0]
+    return len(reached) * force / sum(reached) if len(reached) == len(reaches) else None
 
 
 def _pushed(*sides: Array) -> list[Array]:
@@ -228,6 +235,13 @@ def residual(curve: Array) -> float | None:
         if y0 * y1 < 0 or (y1 == 0 and abs(y0) > 0):
             zeros.append(abs(x0 - y0 * (x1 - x0) / (y1 - y0)))
     return max(zeros, default=None)
+
+
+def is_envelope(curve: Array) -> bool:
+    """Whether a record goes outward from rest in two parts, one to each side."""
+    parts = _parts(curve)
+    sides = {float(np.sign(part[-1, 0])) for part in parts}
+    return len(parts) == 2 and len(sides) == 2 and all((np.diff(np.abs(part[:, 0])) >= 0).all() for part in parts)
 
 
 def cycle_ends(path: tuple[float, ...]) -> tuple[float, ...]:

@@ -196,6 +196,23 @@ def test_stiffness_is_not_read_across_a_gap_of_the_record() -> None:
     assert marks.stiffness == pytest.approx(10.0)
 
 
+def test_repeated_pushes_to_one_side_have_the_stiffness_of_the_first() -> None:
+    """0.3 · 50 N at 0.5 m; no branch leads from one side to the other, and once there was no stiffness."""
+    marks = marks_of(curve((0, 0), (1, 30), (2, 45), (0.5, 0), (3, 50), (1, 0)), cyclic=True)
+    assert marks is not None
+    assert marks.stiffness == pytest.approx(30.0)
+
+
+def test_envelopes_of_both_sides_have_their_common_stiffness() -> None:
+    """0.3 · 60 N at 0.6 and at -1.2 m."""
+    marks = marks_of(curve((0, 0), (1, 30), (10, 61), (np.nan, np.nan), (0, 0), (-2, -30), (-10, -59)), cyclic=True)
+    assert marks is not None
+    assert marks.stiffness == pytest.approx(2 * 18 / 1.8)
+    weak = marks_of(curve((0, 0), (10, 90), (np.nan, np.nan), (0, 0), (-10, -1)), cyclic=True)
+    assert weak is not None
+    assert weak.stiffness is None
+
+
 @pytest.mark.parametrize("end", [0.0, 1e-17, -1e-17])
 def test_return_to_rest_is_no_push_to_the_other_side(end: float) -> None:
     """A slider of 12 N to 6 m returns to rest within rounding; -1e-17 m once counted as the other side in the mean."""

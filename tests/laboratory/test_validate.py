@@ -371,7 +371,7 @@ def test_scene_of_a_cyclic_test_may_push_to_one_side(side: int, first: int, tmp_
     assert LADDER["fem-splitting"].leaves_out(scene) == ""
     pushed = Outcome("", "", "undecided", curve=np.array([(0.0, 0.0), (0.01, 4.4e3), (0.02, 4e3)]))
     row = Prediction(wall, rung, scene, pushed).row()
-    assert (row["dV"], row["cycle_ratio"]) == (pytest.approx(0.1), None)
+    assert (row["dV"], row["cycle_ratio"], row["stiffness_ratio"]) == (pytest.approx(0.1), None, None)
 
 
 @pytest.mark.parametrize(("model", "crushes"), [("limit", False), ("limit-crushing", True)])

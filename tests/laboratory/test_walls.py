@@ -866,6 +866,35 @@ def test_reading_a_wall_does_not_depend_on_its_side(passing: float, kind: str, t
     assert walls[0].is_cyclic or walls[0].path == walls[1].path == (0.012,)
 
 
+ENVELOPE = [(-20, -50), (-10, -59), (-2, -30), (0, 0), (1, 30), (10, 61), (20, 55)]
+
+
+@pytest.mark.parametrize("kind", ["Cyclic", ""])
+@pytest.mark.parametrize("order", [1, -1])
+def test_envelope_from_one_side_to_the_other_is_read_from_rest(order: int, kind: str, tmp_path: Path) -> None:
+    """Models once pushed such a wall to the side at its end only, and its peak was sought where it begins."""
+    rows = [f"{x},{y}\n" for x, y in ENVELOPE]
+    curve = "displacement_mm,force_kN\n" + "".join(rows[::order])
+    row = GRANITE.replace("Monotonic", kind).replace(",61,", ",,")
+    (wall,) = read_folder(write_folder(tmp_path, row, curve=curve))
+    assert wall.path == (0.02, -0.02)
+    assert wall.peaks == (61e3, 59e3)
+    marks = marks_of(wall.curve, cyclic=wall.is_cyclic, side=wall.side)
+    assert marks is not None
+    assert (marks.strength, marks.at_peak, marks.stiffness) == pytest.approx((60e3, 0.01, 20e6))
+    assert (marks.residual, marks.loops) == (None, ())
+    said = "the record is an envelope without cycles; models push the wall once to each side, and no work is compared"
+    assert notes_on(wall) == [said]
+
+
+def test_half_a_cycle_is_no_envelope(tmp_path: Path) -> None:
+    """On its way from one side to the other a wall that slides resists at rest as well."""
+    curve = "displacement_mm,force_kN\n-20,-55\n-18,40\n0,50\n20,61\n"
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE.replace("Monotonic", "Cyclic"), curve=curve))
+    assert wall.curve[0].tolist() == [-0.02, -55e3]
+    assert notes_on(wall) == []
+
+
 @pytest.mark.parametrize("kind", ["Monotonic", "Cyclic"])
 def test_push_back_to_the_start_is_no_push_to_the_other_side(kind: str, tmp_path: Path) -> None:
     """A sliding wall resists equally on its way back; for one side only, the largest force there counts."""
