@@ -101,7 +101,7 @@ def _other_stone(wall: MeasuredWall) -> list[str]:
     if wall.scene_file is not None:
         return []
     row = wall.row
-    stone = find_stone(row.key("Stone"), row.text("stone"))
+    stone = find_stone(row)
     used = {"fc": stone.prism, "fc,b": stone.block, "Eb": stone.young}
     if row.stress("Epc") is not None:
         used["Epc"] = stone.modulus(vertical_load(wall) / (row.number("L") * row.number("t")))

@@ -127,7 +127,7 @@ def _as_stiff_as_under(pressure: float, material: JointMaterial) -> JointMateria
 
 def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
     row = wall.row
-    stone = find_stone(row.key("Stone"), row.text("stone"))
+    stone = find_stone(row)
     if row.joints not in ("dry", ""):
         raise SceneError(row.key("Joints"), 'must be "Dry"; for others give a scene NAME.toml', row.text("joints"))
     length, thickness, at = row.number("L"), row.number("t"), row.number("H0")
@@ -245,7 +245,7 @@ def vertical_load(wall: MeasuredWall) -> float:
     if row.optional("Ntot") is None and (named or stress):
         load = named if stress is None else stress * row.number("L") * row.number("t")
     else:
-        load = row.number("Ntot") - UNIT_WEIGHT * row.number("L") * row.number("t") * row.number("H")
+        load = row.number("Ntot", "σ0,pc") - UNIT_WEIGHT * row.number("L") * row.number("t") * row.number("H")
     if load <= 0:
         raise SceneError(row.key("Ntot"), "must be more than the weight of the wall", row.text("Ntot"))
     return named if named / SAME_LOAD < load < named * SAME_LOAD else load

@@ -16,6 +16,8 @@ from runningbond.pictures.sheet import Sheet
 from runningbond.scene import JointMaterial, SceneError
 from runningbond.scene.ranges import suggestion
 
+from .table_row import TableRow
+
 UNIT_WEIGHT = 20e3
 """Unit weight of the walls [N/m³]: `Ntot` of the table less the load in their names, divided by their volume."""
 
@@ -105,14 +107,12 @@ STONES = {
 }
 
 
-def find_stone(key: str, name: str) -> Stone:
-    """A stone by its name, which a table has under a key."""
-    known = list(STONES)
+def find_stone(row: TableRow) -> Stone:
+    """The stone that a row names."""
+    name, known = row.text("stone"), list(STONES)
     if name.casefold() not in known:
-        what = (
-            f"must be one of {', '.join(known)}{suggestion(name.casefold(), known)}; for another give a scene NAME.toml"
-        )
-        raise SceneError(key, what, name)
+        what = f"must be one of {', '.join(known)}{suggestion(name.casefold(), known)}"
+        raise SceneError(row.key("Stone"), f"{what}; for another give a scene NAME.toml{row.likely('Stone')}", name)
     return STONES[name.casefold()]
 
 

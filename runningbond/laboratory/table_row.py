@@ -36,6 +36,9 @@ AS_WRITTEN = (*NUMBERS, "Reference", *OF_WORDS)
 """Columns that have a meaning, as tables write them."""
 
 OTHER_NAMES = {"failure type": FAILURE, "failure mode": FAILURE, "n": "Ntot"}
+OTHER_NAMES |= {"length": "L", "height": "H", "thickness": "t", "ho": "H0"}
+OTHER_NAMES |= {"wall length": "L", "wall height": "H", "wall thickness": "t"}
+OTHER_NAMES |= {"block length": "lb", "block height": "hb", "peak force": "Vmax,+"}
 OTHER_NAMES |= dict.fromkeys(("σ0", "sigma0", "sigma_0", "sigma0,pc"), "σ0,pc")
 """Columns that may be meant by names that are not similar to theirs."""
 
@@ -137,14 +140,18 @@ class TableRow:
     def _has(self, column: str) -> bool:
         return self.text(column).casefold() not in NOTHING
 
-    def number(self, column: str) -> float:
-        """An entry as a number above 0, in SI units."""
+    def number(self, column: str, *others: str) -> float:
+        """An entry as a number above 0, in SI units; a refusal tells where it may be, or one of other columns."""
         value = self.optional(column)
         if value is None:
             remedy = "is missing; it must be a number above 0, or a scene NAME.toml be there"
-            likely = [f'; did you mean column "{head}"?' for head, meant in self.misspelt() if meant == column]
-            raise SceneError(self.key(column), "".join([remedy, *likely[:1]]))
+            raise SceneError(self.key(column), remedy + self.likely(column, *others))
         return value
+
+    def likely(self, *columns: str) -> str:
+        """Hint at the first head that is not read and may be meant as one of some columns; empty if there is none."""
+        likely = (head for head, meant in self.misspelt() if meant in columns)
+        return next((f'; did you mean column "{head}"?' for head in likely), "")
 
     def stress(self, column: str) -> float | None:
         """A stress [Pa] that no model reads, by default in MPa; None if the entry is empty, or not such a number."""

@@ -696,11 +696,31 @@ def with_column(folder: Path, head: str, cell: str) -> Path:
     return folder
 
 
-@pytest.mark.parametrize(("head", "hint"), [("H_0 [mm]", '; did you mean column "H_0 [mm]"?'), ("height [mm]", "")])
-def test_missing_column_names_the_one_that_may_be_meant(head: str, hint: str, tmp_path: Path) -> None:
-    write_folder(tmp_path, GRANITE, heads=HEADS.replace("H0 [mm]", head))
-    with pytest.raises(SceneError, match=f"H0: is missing; .* be there{re.escape(hint)}$"):
+@pytest.mark.parametrize(
+    ("column", "head", "is_likely"),
+    [
+        ("H0 [mm]", "H_0 [mm]", True),
+        ("H0 [mm]", "Ho [mm]", True),
+        ("H0 [mm]", "height [mm]", False),
+        ("L [mm]", "Length (mm)", True),
+        ("t [mm]", "wall thickness [mm]", True),
+        ("hb [mm]", "Block height [mm]", True),
+        ("Ntot [kN]", "Ntotal [kN]", True),
+        ("Ntot [kN]", "sigma0 [MPa]", True),  # one of the two is enough
+        ("Stone", "Stone type", True),
+        ("Stone", "Remark", False),
+    ],
+)
+def test_missing_column_names_the_one_that_may_be_meant(
+    column: str, head: str, is_likely: bool, tmp_path: Path
+) -> None:
+    write_folder(tmp_path, GRANITE.replace("WS.175", "wall"), heads=HEADS.replace(column, head))
+    with pytest.raises(SceneError) as refused:
         scene_of(read_folder(tmp_path)[0], Features())
+    said = str(refused.value)
+    assert said.startswith(f"wall: tests.csv, line 2: {column.partition(' [')[0]}")
+    assert said.endswith(f'; did you mean column "{head}"?') == is_likely
+    assert ("did you mean" in said) == is_likely
 
 
 def test_conflicting_columns_of_one_name_are_refused(tmp_path: Path) -> None:
