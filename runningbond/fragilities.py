@@ -112,21 +112,22 @@ def fragility(
             raise SceneError("records", f"must name each record once, and name {name.name} {times} times")
     runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)
     levels: dict[bool, list[float]] = {True: [], False: []}  # by whether the wall fell
-    for name, *answer in zip(names, *(runs[key] for key in ("status", "multiplier", "lower", "upper")), strict=True):
-        status, scale, lower, upper = answer[0], *(math.nan if x is None else float(x) for x in answer[1:])
+    unknown = list[int]()
+    answers = zip(names, *(runs[key] for key in ("status", "multiplier", "lower", "upper")), strict=True)
+    for number, (name, status, *answer) in enumerate(answers):
+        scale, lower, upper = (math.nan if x is None else float(x) for x in answer)
         fell = status == "collapse"
         if fell or (status == "undecided" and lower > 0 and math.isnan(upper)):
             history: Any = wall.with_({"load.history.file": name}).scene.history
             peak = float(np.hypot(*history.peak)) / STANDARD_GRAVITY
             levels[fell].append((scale if fell else lower) * peak)
+        else:
+            unknown.append(number)
     fallen, stood = np.sort(levels[True]), np.sort(levels[False])
     if len(fallen) < 2:
-        refused = [
-            f"{name}: {told}"
-            for name, status, told in zip(names, runs["status"], runs["message"], strict=True)
-            if status in ("failed", "refused")
-        ]
-        remedy = "; ".join(["must be two at least that bring the wall down", *refused])
+        first = {runs["message"][k]: names[k] for k in reversed(unknown)}  # the first record with each reason
+        reasons = [f"{name}: {message}" for message, name in reversed(first.items())]
+        remedy = "; ".join(["must be two at least that bring the wall down", *reasons])
         raise SceneError("records", remedy, len(fallen))
     level, stands = np.concatenate([fallen, stood]), np.arange(len(fallen) + len(stood)) >= len(fallen)
     left_out = len(names) - len(level)

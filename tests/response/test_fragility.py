@@ -28,7 +28,7 @@ def test_fragility_of_a_block_over_scaled_copies_of_a_record(tmp_path: Path) -> 
         block_height=2.0,
         thickness=0.12,
         density=1800.0,
-        friction=2.0,
+        friction=1.5,
         normal_stiffness=1e9,
         shear_stiffness=1e9,
         history={"file": str(tmp_path / "0.csv"), "quantity": "g"},
@@ -65,6 +65,26 @@ def test_fragility_takes_only_non_negative_intensities() -> None:
 def test_wall_without_a_record_has_no_fragility() -> None:
     with pytest.raises(rb.SceneError, match="load.history.file: is missing"):
         rb.fragility(rb.read("panel-01"), ["a.csv"], "dem-dynamic")
+
+
+def test_wall_that_falls_by_itself_is_said_to(tmp_path: Path) -> None:
+    """The records were once blamed, which `must be two at least that bring the wall down`, without a reason."""
+    for name, peak in (("a.csv", 1), ("b.csv", 2)):
+        (tmp_path / name).write_text(f"0 0\n0.1 {peak}\n0.2 0\n")
+    wall = rb.Wall.courses(
+        [[1], [1]],
+        block_width=0.2,
+        block_height=0.2,
+        thickness=0.1,
+        density=1800.0,
+        friction=0.6,
+        normal_stiffness=1e9,
+        shear_stiffness=4e8,
+        load={"gravity": [7.0, -7.0]},
+        history={"file": str(tmp_path / "a.csv"), "quantity": "g"},
+    )
+    with pytest.raises(rb.SceneError, match=r"bring the wall down; \S*a.csv: collapses under its dead load$"):
+        rb.fragility(wall, [str(tmp_path / "a.csv"), str(tmp_path / "b.csv")], "dem-dynamic", jobs=1)
 
 
 def test_each_record_counts_once(tmp_path: Path) -> None:
