@@ -203,7 +203,7 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
             what = f"has a largest force of {largest:.3g} N, and the table one of {told:.3g} N; are their units right?"
             raise SceneError(f"{name}.csv", what)
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
-    if wall.is_cyclic:
+    if wall.is_cyclic and min(wall.reach) > NOISE * max(wall.reach):
         wall = replace(wall, curve=_from_rest(curve))
     if _is_pushed_left(wall):
         wall = replace(wall, curve=-curve, is_turned=True)
@@ -241,14 +241,11 @@ def _is_pushed_left(wall: MeasuredWall) -> bool:
 
 
 def _from_rest(curve: Array) -> Array:
-    """A curve, if it is an envelope that leads from one side to the other, as two parts that go outward from rest."""
+    """A curve to both sides, as two parts that go outward from rest if it is an envelope from one side to the other."""
     known = curve[~np.isnan(curve[:, 0])]
-    if len(known) and known[0, 0] > known[-1, 0]:
-        known = known[::-1]
+    known = known if known[0, 0] < known[-1, 0] else known[::-1]
     moved, force = known.T
-    if not (
-        moved.min(initial=0) < 0 < moved.max(initial=0) and (np.diff(moved) >= 0).all() and (moved * force >= 0).all()
-    ):
+    if (np.diff(moved) < 0).any() or (moved * force < 0).any():
         return curve
     return np.concatenate([known[moved >= 0], np.full((1, 2), np.nan), known[moved <= 0][::-1]])
 

@@ -915,6 +915,13 @@ def test_half_a_cycle_is_no_envelope(tmp_path: Path) -> None:
     assert notes_on(wall) == []
 
 
+def test_noise_before_a_push_to_one_side_makes_no_envelope(tmp_path: Path) -> None:
+    curve = "displacement_mm,force_kN\n-0.01,-0.1\n0,0\n1,30\n10,61\n"
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE.replace("Monotonic", "Cyclic"), curve=curve))
+    assert (len(wall.curve), wall.path) == (4, (0.01,))
+    assert notes_on(wall) == []
+
+
 @pytest.mark.parametrize("kind", ["Monotonic", "Cyclic"])
 def test_push_back_to_the_start_is_no_push_to_the_other_side(kind: str, tmp_path: Path) -> None:
     """A sliding wall resists equally on its way back; for one side only, the largest force there counts."""
