@@ -168,6 +168,10 @@ class Lead(ABC):
         """Advice if the answers at two speeds differ by more than a relative tolerance; may be empty."""
         return ""
 
+    def shorter(self, traverse: Traverse) -> str:
+        """Advice if a traverse failed; may be empty."""
+        return ""
+
     def fall(self, traverse: Traverse) -> str:
         """Note on how a wall has fallen at the end of a traverse."""
         return f"the wall falls beyond {np.abs(traverse.curve[:, 0]).max():.4g} m"

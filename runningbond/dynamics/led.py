@@ -98,14 +98,16 @@ def collapse_of_led(
                 break
             if _has_converged(lead, traverses, tolerance) and not _rate(scene):
                 break
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Unstable) as stop:
+        hint = ""
         if traverses:
             traverses[-1].calm()
+            hint = lead.shorter(traverses[-1])
             traverse = lead.kept(traverses)
             outcome = _path(outcome, scene, run, points, traverse) if traverse.rows else outcome
+        if isinstance(stop, Unstable):
+            return replace(outcome, status="failed", steps=stop.steps, message=joined(str(stop), hint))
         return replace(outcome, message="interrupted: the path so far")
-    except Unstable as error:
-        return replace(outcome, status="failed", steps=error.steps, message=str(error))
     # A support that barely moves does almost no work. The motion under the suddenly applied dead load does not count.
     # If the path returns, works nearly cancel: their ranges are what counts.
     gone = float(np.ptp([row.works for row in traverse.rows], axis=0).sum()) if traverse.rows else 0.0

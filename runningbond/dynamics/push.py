@@ -225,6 +225,18 @@ class Push(Lead):
         most = number(float(curve[: agreed + 1, 1].max()))
         return f"up to {two_digits(curve[agreed, 0])} m it is {most} at both: a shorter distance answers"
 
+    def shorter(self, traverse: Traverse) -> str:
+        """Advice on a traverse that failed after a peak."""
+        curve = traverse.curve
+        if not len(curve):
+            return ""
+        if earlier := self.before(curve):
+            return f"{earlier}: take a shorter distance"
+        if curve[-1, 1] >= curve[:, 1].max():
+            return ""
+        came = two_digits(abs(curve[-1, 0]))
+        return f"the wall had passed its largest multiplier, and came to {came} m: take a shorter distance"
+
     @staticmethod
     def _agreed(fast: Array, slow: Array, tolerance: float) -> int:
         """Farthest row of a curve ``(n, 2)`` with a largest load that another speed and a longer path hardly change."""

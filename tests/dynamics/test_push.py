@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond import Wall
-from runningbond.dynamics import Run, State
+from runningbond.dynamics import Run, State, Unstable
 from runningbond.dynamics.contact_update import ContactUpdate
 from runningbond.dynamics.push import Push
 from runningbond.dynamics.traverse import Traverse, TraverseRow
@@ -205,6 +205,22 @@ def test_interrupt_keeps_last_complete_push() -> None:
     assert (outcome.status, outcome.multiplier) == ("undecided", None)
     assert "interrupted" in outcome.message
     assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.05)
+
+
+def test_push_that_becomes_unstable_keeps_its_path() -> None:
+    """Far beyond the peak, which is at the start, and a third of the way to where the load vanishes."""
+    brink = HEIGHT * math.sin(math.atan(WIDTH / HEIGHT))
+
+    def blow_up(run: Run, state: State, multiplier: float) -> None:
+        if run.is_driven and abs(state.motion[0]) > brink / 3:
+            raise Unstable(state.steps, run.dt, run.dt)
+
+    outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", observe=blow_up)
+    assert outcome.status == "failed"
+    assert outcome.multiplier is None
+    assert "unstable" in outcome.message
+    assert "m: take a shorter distance" in outcome.message
+    assert outcome.curve[:, 1].max() == pytest.approx(WIDTH / HEIGHT, rel=0.03)  # with the inertia of a fast push
 
 
 def test_push_ends_if_wall_falls_while_push_accelerates() -> None:
