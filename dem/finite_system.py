@@ -98,7 +98,20 @@ class RigidContacts:
         """Values at `contact_points` from those at the contacts' points, as in `ContactSearch`."""
         at = position_of(self.points(contacts)[0], self._key_of_point)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])  # a lost point is open by at least the margin
+        values = self._summed_at_single_ends(contacts, values)
         return np.column_stack([values, lost])[:, at]  # index -1, for points that are lost, is the last column
+
+    def _summed_at_single_ends(self, contacts: Contacts, values: Array) -> Array:
+        """Values ``(6, np)`` in which the first point of each single end has the force of all points there.
+
+        It alone is a point of the joint: the others have keys of their own.
+        """
+        if not self._points:
+            return values
+        low, high = contacts.pairs.T
+        alone, summed = low == high, values.reshape(6, self._points, len(low)).copy()
+        summed[2:4, 0, alone] = summed[2:4, :, alone].sum(axis=1)
+        return summed.reshape(values.shape)
 
     def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """Forces in space as in `ContactSearch`; a point between two ends pulls as its shares at these ends would."""

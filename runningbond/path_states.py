@@ -7,6 +7,7 @@ import numpy as np
 
 from .contacts.search import ContactForces
 from .joints import JointPoints
+from .pictures.frame import Frame
 from .scene import Array
 
 if TYPE_CHECKING:
@@ -27,8 +28,12 @@ class PathState:
     motion : (nb, 3) float
         Displacement of each block's centroid [m] and rotation [rad] from the undeformed wall.
     force : (np, 2) float
-        Normal and tangential force of each joint point [N], tension positive; at finite displacements along the normal
-        and the tangent of the side that is in contact.
+        Normal and tangential force of each joint point [N], tension positive. At finite displacements along normal and
+        tangent of the side on which a corner rests, which have turned with block a or with block b, or of rounded
+        corners on each other; a corner that emerges at the end of a side has the force per unit of its opening.
+    pull : (np, 2) float
+        Force of block b on block a at each joint point, along x and y [N]. At finite displacements it acts where the
+        two sides touch now, and not at the point.
     opening, slip : (np,) float
         Jumps of the joint points [m]; at finite displacements along the normal and the tangent that turn with block a.
     velocity : (nb, 3) float
@@ -45,6 +50,7 @@ class PathState:
     multiplier: float
     motion: Array
     force: Array
+    pull: Array
     opening: Array
     slip: Array
     velocity: Array
@@ -66,6 +72,7 @@ def collected(recorder: "Recorder") -> list[PathState]:
             frame.multiplier,
             frame.motion,
             np.column_stack([frame.normal, frame.tangential])[order] * ordered.area[:, None],
+            _pull(frame, points)[order],
             frame.opening[order],
             frame.slip[order],
             frame.velocity,
@@ -75,3 +82,9 @@ def collected(recorder: "Recorder") -> list[PathState]:
         )
         for frame in recorder.frames
     ]
+
+
+def _pull(frame: Frame, points: JointPoints) -> Array:
+    """Force of block b on block a at joint points, along x and y ``(np, 2)`` [N]."""
+    undeformed = frame.normal[:, None] * points.normal + frame.tangential[:, None] * points.tangent
+    return np.asarray(points.area[:, None] * (frame.traction if len(frame.traction) else undeformed))

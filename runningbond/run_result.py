@@ -93,8 +93,9 @@ class Result:
         """Joint points: two per joint, or all points along joints if any joint softens, crushes or closes.
 
         ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
-        tension positive, and ``opening`` and ``slip`` [m] of the mechanism, or in the deformed shape of a wall that has
-        moved far (`Outcome.moved`). NaN where the model gives no value.
+        tension positive, at finite displacements along the side that bears (`PathState.force`), and ``opening`` and
+        ``slip`` [m] of the mechanism, or in the deformed shape of a wall that has moved far (`Outcome.moved`). NaN
+        where the model gives no value.
         """
         scene = self.wall.scene
         force = self.outcome.force

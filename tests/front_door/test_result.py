@@ -110,6 +110,7 @@ def test_states_at_rest_are_in_equilibrium_and_include_the_lower_bound(model: st
         ground = state.points.block[:, 1] == len(scene.blocks) - 1
         assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
         assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
+        assert state.pull[ground] == pytest.approx(state.force[ground, ::-1] * (1.0, -1.0))
     assert (np.diff(states[0].points.joint) >= 0).all()
 
 
