@@ -15,6 +15,7 @@ from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.rigid_sides import in_space, turn_out
 from runningbond.contacts.search import ContactForces, Contacts, facing_sides, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface, moving_far
+from runningbond.joints.wall_law import bears_by_area
 from runningbond.scene import Array, Indices, Mask
 
 from .bearing_areas import BearingAreas
@@ -59,7 +60,7 @@ class DeformableContacts:
         found = self._near(still, self.outline.margin)
         self._areas = BearingAreas(blocks, found, self._gathered(found, still).contact[:, :2])
         self.undeformed = replace(found, area=self._areas.undeformed, glued=found.joint >= 0)
-        if self._materials.law(found).law.closed is not None:
+        if bears_by_area(self._materials.law(found).law):
             self.undeformed = replace(self.undeformed, margin=self.bearing(found).margin)
 
     def find(self, motion: Array, margin: float) -> Contacts:

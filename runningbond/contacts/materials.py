@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.joints import joint_stiffness
 from runningbond.joints.law import KernelLaw
-from runningbond.joints.wall_law import kernel_law
+from runningbond.joints.wall_law import kernel_law, seated_law
 from runningbond.scene import Indices, JointMaterial, Scene, SceneError, table_of
 
 from .search import Contacts
@@ -65,4 +65,5 @@ class ContactMaterials:
     def law(self, contacts: Contacts, pairs: Indices | None = None, points: int = 1) -> KernelLaw:
         """Law of all ends, or of `points` points along each of the ``pairs`` ``(n, 2)`` of ends (`joints.along`)."""
         number = self._alike[self.number(contacts)]
-        return kernel_law(self._all, number if pairs is None else np.tile(number[pairs[:, 0]], points))
+        of_point = number if pairs is None else np.tile(number[pairs[:, 0]], points)
+        return kernel_law(self._all, of_point, seated_law(self._all))

@@ -6,6 +6,7 @@ import numpy as np
 
 from runningbond.contacts.search import Contacts, bearing_length, position_of
 from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
+from runningbond.joints.wall_law import bears_by_area
 from runningbond.scene import Array
 
 from .state import PLASTIC_SLIP, State, frames_of, history_free_of_shear
@@ -98,7 +99,7 @@ class ContactUpdate:
         whole = (interface.law.tension > 0) & (interface.law.damage(history) < 1)
         drawn = OPENING_MARGIN * opening[whole].max(initial=0.0)
         contacts = search.find(state.motion, max(search.outline.margin, fast, deep, drawn))
-        crushes = interface.law.law.closed is not None  # to joints that cannot crush the area is no strength
+        crushes = bears_by_area(interface.law.law)
         contacts = search.bearing(contacts) if crushes else contacts
         # Match ends of the same two sides; or, for a corner that has rolled over, the same corner on the same side,
         # which keeps its area: another stiffness would jolt it.

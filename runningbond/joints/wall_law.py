@@ -12,6 +12,9 @@ from .interface import INTERFACE
 from .law import KernelLaw, Law
 from .softening import SOFTENING
 
+SEATED = replace(INTERFACE, name=SOFTENING.name)
+"""Softening with a plastic closure; for materials that neither crush nor close the tractions are the same."""
+
 PER_MATERIAL = 4
 """Number of joints per material from which on joints are grouped by material."""
 
@@ -62,12 +65,26 @@ def row_of_joint(scene: Scene) -> Indices:
     return scene.material_of_joint if apart else np.zeros_like(scene.material_of_joint)
 
 
-def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:
-    """Law over joint points, from the joints' materials, which need a stiffness, and each point's material ``(np,)``.
+def seated_law(materials: Sequence[JointMaterial]) -> Law:
+    """Common law of materials for contacts that may be found while blocks lie in each other.
 
-    Consecutive points of one material form a segment.
+    Softening points have no plastic closure, so that they would press at once with a pressure that nothing has caused.
     """
     law = common_law(materials)
+    return SEATED if law is SOFTENING else law
+
+
+def bears_by_area(law: Law) -> bool:
+    """Whether the area over which blocks bear limits their force: joints crush, or close."""
+    return law.closed is not None and law is not SEATED
+
+
+def kernel_law(materials: Sequence[JointMaterial], of_point: Indices, law: Law | None = None) -> KernelLaw:
+    """Law over joint points, from the joints' materials, which need a stiffness, and each point's material ``(np,)``.
+
+    Consecutive points of one material form a segment. The law is by default the `common_law` of the materials.
+    """
+    law = law or common_law(materials)
     start = np.flatnonzero(np.diff(of_point, prepend=-1))
     segments = np.append(start, len(of_point)).astype(np.uint64)
     constants = np.array([law.constants(material) for material in materials])

@@ -54,11 +54,13 @@ def test_area_that_is_lost_takes_its_force_and_its_energy() -> None:
     assert lost == pytest.approx(energy / 2)
 
 
-@pytest.mark.parametrize("closure", [{}, {"closure": {"growth": 1e6, "stiffest": 2e10}}])
-def test_sides_found_overlapping_start_without_force(closure: dict[str, object]) -> None:
+CRUSHES = {"compressive_strength": 1e8}
+
+
+@pytest.mark.parametrize("material", [BREAKS, CRUSHES, CRUSHES | {"closure": {"growth": 1e6, "stiffest": 2e10}}])
+def test_sides_found_overlapping_start_without_force(material: dict[str, object]) -> None:
     """A block suddenly lies on its other side, 1 mm inside the ground: only further penetration δ is resisted."""
-    material = {**STIFF, "compressive_strength": 1e8, **closure}
-    scene = courses([[1]], width=0.4, height=0.2, joint=material)
+    scene = courses([[1]], width=0.4, height=0.2, joint=STIFF | material)
     system = finite_system(scene)
     run, state = Run(system), State.at_rest(system)
     _, up, spin = system.rigid[np.flatnonzero(scene.wall)[0]]
