@@ -4,7 +4,6 @@ Names and units are those in docs/paraview.md, the same in every frame.
 """
 
 from collections.abc import Mapping
-from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -83,7 +82,7 @@ class GridBuilder:
 
         Mid-lines come first, then quadrilaterals between the two sides, then the points of new contacts.
         """
-        points, pair, new = self._points, self._pieces, frame.new_contacts
+        points, pair, new = self._points, self._pieces(frame.finite), frame.new_contacts
         # Points of a piece: both ends of its mid-line, then the quadrilateral, along side a and back along side b.
         at = pair[:, [0, 1, 0, 1, 1, 0]].ravel()
         n, m = len(pair), len(new)
@@ -99,7 +98,7 @@ class GridBuilder:
             ],
         )
         known = {DISPLACEMENT: _in_space(new.place - met), "force [N]": _in_space(new.force)}
-        for name, values in self._at_pieces(frame, at).items():
+        for name, values in self._at_pieces(frame, pair, at).items():
             others = known.get(name, np.zeros((m, *values.shape[1:]), dtype=values.dtype))
             _add(grid.point_data, {name: np.concatenate([values, others])})
         piece, none = np.tile(pair[:, 0], 2), np.zeros(m, dtype=np.uint8)
@@ -111,9 +110,9 @@ class GridBuilder:
         _add(grid.field_data, _moment(frame))
         return grid
 
-    def _at_pieces(self, frame: Frame, at: Indices) -> dict[str, Any]:
+    def _at_pieces(self, frame: Frame, pair: Indices, at: Indices) -> dict[str, Any]:
         """Arrays of the points of pieces, six to a piece, from the joint points there ``(n,)``."""
-        points, pair, n = self._points, self._pieces, len(self._pieces)
+        points, n = self._points, len(pair)
         still = points.normal, points.tangent
         normal, tangent = turned_frames(points, frame.motion) if frame.finite else still
         jump = frame.opening[:, None] * normal + frame.slip[:, None] * tangent
@@ -146,15 +145,16 @@ class GridBuilder:
         points = self._points
         return np.array([_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T])
 
-    @cached_property
-    def _pieces(self) -> Indices:
+    def _pieces(self, finite: bool) -> Indices:
         """Joint points at the two ends of each piece of a joint, ``(n, 2)``."""
         points = self._points
         along = (points.position * points.tangent).sum(axis=1)
         order = np.lexsort((along, points.joint))
         first, second = order[:-1], order[1:]
-        length = along[second] - along[first]
-        apart = (points.joint[first] == points.joint[second]) & (length > self._scene.blocks.tolerance)
+        # Elements of a joint share the place where they meet. If displacements are finite, corners are new contacts.
+        single = self._scene.joints.at_corner[points.joint[first]] & (not finite)
+        apart = (along[second] - along[first] > self._scene.blocks.tolerance) | single
+        apart &= points.joint[first] == points.joint[second]
         return np.column_stack([first[apart], second[apart]])
 
 
