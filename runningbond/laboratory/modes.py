@@ -74,7 +74,7 @@ def _turned_masonry(scene: Scene, motion: Array) -> float:
 
 def bed_slips(scene: Scene, motion: Array, moved: float | None = None) -> list[float]:
     """Mean slip of each bed joint over the wall's whole length [m], for a motion ``(nb, 3)`` as in `Outcome`."""
-    points, bed = wall_points(scene), scene.joints.is_bed
+    points, bed = wall_points(scene), scene.joints.is_bed & ~scene.joints.at_corner
     _, slip = rigid_jumps(scene.blocks, points, motion, moved)
     level = np.round(points.position[:, 1] / scene.blocks.tolerance).astype(int)
     slips = []

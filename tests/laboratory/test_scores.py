@@ -34,6 +34,7 @@ from runningbond.limit import limit
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, scene_from_dict
 from runningbond.scene.beam import Condition
+from tests.models.test_corners import block
 
 WALLS = shipped_walls()
 
@@ -419,6 +420,16 @@ def test_wall_cut_along_a_bed_joint_slides(granite: Scene, level: float) -> None
     assert moved(granite, motion) == SLIDING
     assert max(bed_slips(granite, motion)) == pytest.approx(1.0)
     assert moved(under_a_level_beam(granite), motion) == SLIDING
+
+
+def test_corners_on_sides_are_no_beds() -> None:
+    """A tip on the level ground, beside a block on a bed."""
+    tip = [[0.7, 0.0], [0.9, 0.4], [0.4, 0.4]]
+    scene = block(tip, ground=[[[-1, -0.5], [2, -0.5], [2, 0], [-1, 0]]]).scene
+    assert (scene.joints.at_corner & scene.joints.is_bed).any()
+    slides = np.zeros((len(scene.blocks), 3))
+    slides[1, 0] = 1.0
+    assert bed_slips(scene, slides) == [0.0]
 
 
 def test_wall_with_a_stepped_crack_fails_on_the_diagonal(granite: Scene) -> None:
