@@ -15,6 +15,7 @@ from runningbond.scene.plausibility import warnings
 from runningbond.studies.accuracy.walls import all_walls
 from runningbond.studies.walls import KNOWN, known_scene
 
+from ..models.test_corners import LEANING, block
 from ..walls import content, courses, panel, write_toml
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
@@ -119,6 +120,10 @@ def test_values_in_a_wrong_unit_are_warned_about(odd: dict[str, Any], says: str,
     assert second in line
     assert "\n" not in line
     assert warnings(panel(**near)) == ()
+
+
+def test_corners_without_strength_repeat_no_warning() -> None:
+    assert len(warnings(block(LEANING, friction=0.05, cohesion=1e4).scene)) == 1
 
 
 def test_zero_gravity_has_no_warning() -> None:
