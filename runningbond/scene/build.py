@@ -115,8 +115,8 @@ def build_scene(
         None if beam is None else (len(polygons), beam.joint or joint.name),
     )
     block_materials, material, no_blocks = _in_use(block_materials, material)
-    joint_materials, material_of_joint = _without_strength(joint_materials, material_of_joint, found)
     joint_materials, material_of_joint, no_joints = _in_use(joint_materials, material_of_joint)
+    joint_materials, material_of_joint = _without_strength(joint_materials, material_of_joint, found)
     scene = Scene(
         title,
         blocks,

@@ -68,6 +68,15 @@ def test_corners_have_friction_alone_and_the_area_of_the_end_of_a_joint() -> Non
     assert points.area[single].sum() == pytest.approx(of_end)
 
 
+def test_material_of_a_corner_alone_is_in_use() -> None:
+    """Lime with a cohesion, which the corner does not have."""
+    lime = {"friction": 0.9, "cohesion": 1e4, "normal_stiffness": 1e10, "shear_stiffness": 1e10}
+    at_toe = {"joint": "lime", "box": [[0.39, -0.01], [0.41, 0.01]]}
+    scene = leaning(joints={"lime": lime}, assign=[at_toe])
+    assert not scene.notes
+    assert [scene.joint_materials[k].friction for k in scene.material_of_joint] == [0.2, 0.2, 0.2, 0.9]
+
+
 @pytest.mark.parametrize("softening", [{}, {"cohesion": 1e4, "fracture_energy_1": 10.0, "fracture_energy_2": 50.0}])
 def test_areas_are_those_at_finite_displacements(softening: dict[str, float]) -> None:
     """There, leaning sides overlap, and touch at the first of the points along them; here the corner is the contact."""
