@@ -98,6 +98,8 @@ class BearingAreas:
         """
         contacts, outline, points = self.contacts, self.blocks.outline, self.blocks.wall.elements.points
         joint, carries, wide = contacts.joint, self._wide > 0, self._wide
+        if not carries.any():
+            return contacts.area
         whole = np.bincount(joint[carries], wide[carries], len(outline.joints))
         stretch = np.divide(outline.joints.length, whole, out=np.ones(len(whole)), where=whole > 0)
         nearest, apart = self.nearest

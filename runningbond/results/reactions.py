@@ -50,12 +50,15 @@ class Supports:
     block : (k,) int
         The held blocks.
     about : (k, 2) float
-        Reference point of each block's moment [m]: the middle of its pins, else of its joint points, else of its ties.
+        Reference point of each block's moment [m]: the middle of its pins, else of its joint points, else of its
+        joints, else of its ties.
     """
 
     def __init__(self, scene: Scene, points: JointPoints, owner: Indices | None = None) -> None:
         sides = points.block if owner is None else owner[points.block]
-        touched = np.isin(np.arange(len(scene.blocks)), [*sides.ravel(), *scene.ties.block.ravel()])
+        # At finite displacements a body that touches corners alone has none of the points.
+        near = [*sides.ravel(), *scene.joints.block.ravel(), *scene.ties.block.ravel()]
+        touched = np.isin(np.arange(len(scene.blocks)), near)
         self._pins = scene.pins  # late pins hold blocks that are pinned anyway, at the same point
         self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), self._pins.block)
         number = np.full(len(scene.blocks), -1)
@@ -75,7 +78,9 @@ class Supports:
     def _middle(self, k: int) -> Array:
         pinned = self._pins.point[self._pins.block == self.block[k]]
         touched = self._points.position[self._body == k]
-        at = next(each for each in (pinned, touched, self._tied_at[self._tied == k]) if len(each))
+        joints = self._scene.joints
+        near = joints.ends[(joints.block == self.block[k]).any(axis=1)].reshape(-1, 2)
+        at = next(each for each in (pinned, touched, near, self._tied_at[self._tied == k]) if len(each))
         return np.asarray((at.min(axis=0) + at.max(axis=0)) / 2)
 
     def _load(self, forces: Forces, number: Indices) -> Array:

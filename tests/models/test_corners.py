@@ -130,3 +130,28 @@ def test_corners_that_meet_crosswise_touch_along_either_side() -> None:
     assert np.bincount(place).tolist() == [4, 4]
     pairs = np.sort(scene.blocks.owner[np.column_stack([corner, side])])
     assert {tuple(pair) for pair in pairs.tolist()} == {(0, 3), (1, 2)}
+
+
+@pytest.mark.parametrize("displacements", ["small", "finite"])
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+def test_stone_stands_on_two_tips(model: str, displacements: Any) -> None:
+    """A wall without any joint; the ground bears its weight, and the pushes that slide it at λ = tan φ."""
+    stone = [[0, 0], [0.2, 0.15], [0.4, 0.15], [0.6, 0], [0.7, 0.5], [-0.1, 0.5]]
+    wall = Wall.outlines(
+        [stone],
+        thickness=0.2,
+        density=2000.0,
+        young=1e11,
+        friction=0.6,
+        normal_stiffness=1e10,
+        shear_stiffness=1e10,
+        ground=[FLAT],
+        live={"kind": "lateral"},
+    )
+    assert wall.scene.joints.at_corner.all()
+    further: dict[str, Any] = {"distance": 0.01} if displacements == "finite" else {}
+    result = wall.run(model, displacements=displacements, **further)
+    assert result.multiplier == pytest.approx(0.6, rel=0.01)
+    weight, last = 9.81 * float(wall.scene.mass[0]), result.curve.iloc[-1]
+    assert last["ground vertical [N]"] == pytest.approx(weight, rel=1e-3)
+    assert last["ground horizontal [N]"] == pytest.approx(-0.6 * weight, rel=0.01)
