@@ -88,14 +88,18 @@ class Wall:
         self.held += [(scene.beam.block, self.centre[scene.beam.block], np.array([0.0, 1.0]), 0.0)] if late else []
 
     def _points(self) -> None:
-        """Two points per joint, at its ends or inset from them, each with the strength of half the joint."""
+        """Two points per joint, at its ends or inset from them, each with the strength of half the joint.
+
+        Both points of the contact of a single corner, which has no strength, are at the corner.
+        """
         joints, materials = self.scene.joints, [self.scene.joint_materials[k] for k in self.scene.material_of_joint]
         if any(material.law is not None for material in materials):
             sys.exit("a joint has a law of its own: not checked")
         run = joints.ends[:, 1] - joints.ends[:, 0]
         length = np.hypot(*run.T)
         tangent = run / length[:, None]
-        inset = np.array([material.inset for material in materials])[:, None] * tangent
+        inset = np.where(joints.corner_length > 0, length / 2, [material.inset for material in materials])
+        inset = inset[:, None] * tangent
         self.at = np.stack([joints.ends[:, 0] + inset, joints.ends[:, 1] - inset], axis=1).reshape(-1, 2)
         self.tangent = np.repeat(tangent, 2, axis=0)
         self.normal = np.column_stack([self.tangent[:, 1], -self.tangent[:, 0]])

@@ -1,5 +1,6 @@
 """Corners on sides bear at a point in every model; a note tells if a mechanism violates the contact of two corners."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,9 @@ import pytest
 
 from runningbond import Wall
 from runningbond.models.corners import corners_on_corners
+from runningbond.results.store import save_outcome
 from tests.at_length import at_length
+from tests.checker import check
 
 NOTE = "contact of the corners at (0.4, 0) m, which touch without a joint, is left out: the wall may bear more"
 IN_TWO = [
@@ -93,6 +96,14 @@ def test_glued_joints_give_corners_no_strength(model: str) -> None:
     away = {"kind": "lateral", "direction": "left"}
     notched_off, flat = (block(live=away, ground=[ground], **glued).run(model) for ground in (notched(0.4), FLAT))
     assert notched_off.lower == pytest.approx(flat.lower, rel=0.01)  # a joint as strong as the bed's adds 6 %
+
+
+@pytest.mark.parametrize("model", ["limit", "limit-nonassociated"])
+def test_checker_puts_both_points_at_the_corner(model: str, tmp_path: Path) -> None:
+    """Whatever the inset, and without the strength of other joints."""
+    wall = block(LEANING, inset=0.02, cohesion=1e3, tensile_strength=1e3)
+    save_outcome(wall.run(model).outcome, tmp_path, "", wall.scene)
+    assert check(tmp_path)
 
 
 @pytest.mark.long
