@@ -103,7 +103,7 @@ def build_scene(
         live, dead = beam.loads()
         load = Load(load.gravity, (*live, *load.live), (*load.dead, *dead))
     part_of, material = np.append(owner, np.full(others, -1)), np.append(material[owner], np.zeros(others, np.int64))
-    found = _joints(blocks, fixed, part_of)
+    found = _joints(blocks, fixed, whole, part_of)
     joint_materials = (joint, *joints, *(() if inner_joint is None else (replace(inner_joint, name="inner_joint"),)))
     material_of_joint, of_joints = assign_joints(
         found,
@@ -177,14 +177,15 @@ def _support(kind: SupportKind, blocks: Blocks, wall: Mask) -> tuple[Mask, Pins]
     return ~wall, NO_PINS
 
 
-def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
+def _joints(blocks: Blocks, fixed: Mask, whole: Blocks, part_of: Indices) -> Joints:
     """Joints with a movable side, then those between parts of one block, then contacts of single corners."""
     joints = find_joints(blocks)
     movable = ~fixed[joints.block].all(axis=1)
     a, b = part_of[joints.block].T
     inner = (a == b) & (a >= 0) & movable
     order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
-    return with_corners(Joints(joints.block[order], joints.ends[order], inner[order]), blocks, fixed)
+    joints = Joints(joints.block[order], joints.ends[order], inner[order])
+    return with_corners(joints, blocks, fixed, whole, part_of)
 
 
 def _without_strength(

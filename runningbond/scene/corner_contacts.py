@@ -19,13 +19,21 @@ LEAST_OVERLAP = 1e-2
 """Least overlap of a leaning side, relative to the shorter one of the two sides."""
 
 
-def with_corners(joints: Joints, blocks: Blocks, fixed: Mask) -> Joints:
-    """Joints, and after them the contacts of corners of which a block moves."""
+def with_corners(joints: Joints, blocks: Blocks, fixed: Mask, whole: Blocks, part_of: Indices) -> Joints:
+    """Joints, and after them the contacts of corners of which a block moves.
+
+    `part_of` has the number among `whole` blocks of each block that may be cut from one, ``(nb,)``; −1 for others.
+    """
     owner, start = blocks.owner, blocks.vertices
     run = start[blocks.successor] - start
     if (np.abs(run).min(axis=1) <= blocks.tolerance).all():
         return joints  # between level and upright sides corners always lie at ends of joints
-    corner, side = corners_on_sides(joints, blocks, fixed)
+    inside = blocks.reentrant | _cut(blocks, whole, part_of)
+    corner, side = corners_on_sides(joints, blocks, fixed, inside)
+    own = part_of[owner]
+    within = (own[corner] == own[side]) & (own[side] >= 0)
+    outer = ~within & ~_on_cuts(joints, blocks, start[side] + run[side] / 2)
+    corner, side = corner[outer], side[outer]
     if not len(corner):
         return joints
     along = run[side] / np.hypot(*run[side].T)[:, None]
@@ -37,6 +45,22 @@ def with_corners(joints: Joints, blocks: Blocks, fixed: Mask) -> Joints:
         np.concatenate([joints.inner, np.zeros(len(corner), dtype=np.bool_)]),
         np.concatenate([joints.corner_length, _bearing(blocks, corner, side, run, along)]),
     )
+
+
+def _cut(blocks: Blocks, whole: Blocks, part_of: Indices) -> Mask:
+    """Vertices ``(nv,)`` of parts of blocks on sides or in notches of the whole block, where it was cut."""
+    tree = shapely.STRtree(shapely.points(whole.vertices))
+    vertex, near = tree.query(shapely.points(blocks.vertices), predicate="dwithin", distance=blocks.tolerance)
+    own = part_of[blocks.owner]
+    at_corner = vertex[~whole.reentrant[near] & (whole.owner[near] == own[vertex])]
+    return np.asarray((own >= 0) & ~np.isin(np.arange(len(own)), at_corner))
+
+
+def _on_cuts(joints: Joints, blocks: Blocks, points: Array) -> Mask:
+    """Whether points ``(n, 2)`` lie on potential cracks."""
+    tree = shapely.STRtree(shapely.linestrings(joints.ends[joints.inner]))
+    number, _ = tree.query(shapely.points(points), predicate="dwithin", distance=blocks.tolerance)
+    return np.isin(np.arange(len(points)), number)
 
 
 def _bearing(blocks: Blocks, corner: Indices, side: Indices, run: Array, along: Array) -> Array:
@@ -58,15 +82,18 @@ def _bearing(blocks: Blocks, corner: Indices, side: Indices, run: Array, along: 
     return np.asarray(np.clip(overlap, LEAST_OVERLAP * shorter, shorter / 2) / 2)
 
 
-def corners_on_sides(joints: Joints, blocks: Blocks, fixed: Mask) -> tuple[Indices, Indices]:
-    """Corners that touch sides of other blocks without a joint there, and these sides, two ``(n,)``."""
+def corners_on_sides(joints: Joints, blocks: Blocks, fixed: Mask, inside: Mask) -> tuple[Indices, Indices]:
+    """Corners that touch sides of other blocks without a joint there, and these sides, two ``(n,)``.
+
+    Sides may be touched at an end that is `inside`, ``(nv,)``: in a notch, or where the block was cut.
+    """
     owner, corners, reach = blocks.owner, blocks.vertices, blocks.tolerance
     ends = np.column_stack([np.arange(len(owner)), blocks.successor])
     sides = corners[ends]
     tree = shapely.STRtree(shapely.points(corners))
     side, corner = tree.query(shapely.linestrings(sides), predicate="dwithin", distance=reach)
     away = np.hypot(*np.moveaxis(sides[side] - corners[corner][:, None], 2, 0))
-    touches = ((away > reach) | blocks.reentrant[ends[side]]).all(axis=1) & ~blocks.reentrant[corner]
+    touches = ((away > reach) | inside[ends[side]]).all(axis=1) & ~blocks.reentrant[corner]
     touches &= can_part(blocks, fixed, corner, side)
     side, corner = side[touches], corner[touches]
     # A joint lies on that side if it is between the same blocks, touches the corner and is parallel to the side.

@@ -166,3 +166,16 @@ def test_stone_stands_on_two_tips(model: str, displacements: Any) -> None:
     weight, last = 9.81 * float(wall.scene.mass[0]), result.curve.iloc[-1]
     assert last["ground vertical [N]"] == pytest.approx(weight, rel=1e-3)
     assert last["ground horizontal [N]"] == pytest.approx(-0.6 * weight, rel=0.01)
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.1])
+def test_tip_bears_where_a_block_may_crack(depth: float) -> None:
+    """On the axis of a block, level or with a notch there; the stone above rests on the next block too."""
+    notch = [[0.25, 0.3 - depth]] * (depth > 0)
+    lower = [[[0, 0], [0.5, 0], [0.5, 0.3], *notch, [0, 0.3]], [[0.5, 0], [1, 0], [1, 0.3], [0.5, 0.3]]]
+    upper = [[0.25, 0.3 - depth], [0.6, 0.4], [0.7, 0.3], [1, 0.3], [0.9, 0.7], [0.1, 0.7]]
+    keys: dict[str, Any] = {"thickness": 0.2, "density": 2000.0, "friction": 0.6, "ground": [FLAT]}
+    strong = {"friction": 0.6, "cohesion": 1e6, "tensile_strength": 5e5}
+    for inner in (None, strong):
+        wall = Wall.outlines([*lower, upper], live={"kind": "lateral"}, inner_joint=inner, **keys)
+        assert wall.run("limit").multiplier == pytest.approx(0.6)
