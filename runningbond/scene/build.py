@@ -116,7 +116,7 @@ def build_scene(
     )
     block_materials, material, no_blocks = _in_use(block_materials, material)
     joint_materials, material_of_joint, no_joints = _in_use(joint_materials, material_of_joint)
-    joint_materials, material_of_joint = _without_strength(joint_materials, material_of_joint, found)
+    joint_materials, material_of_joint, _ = _in_use(*_without_strength(joint_materials, material_of_joint, found))
     scene = Scene(
         title,
         blocks,

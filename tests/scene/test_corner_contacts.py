@@ -75,6 +75,7 @@ def test_material_of_a_corner_alone_is_in_use() -> None:
     scene = leaning(joints={"lime": lime}, assign=[at_toe])
     assert not scene.notes
     assert [scene.joint_materials[k].friction for k in scene.material_of_joint] == [0.2, 0.2, 0.2, 0.9]
+    assert not any(each.is_bonded for each in scene.joint_materials)  # which finite displacements would refuse
 
 
 @pytest.mark.parametrize("softening", [{}, {"cohesion": 1e4, "fracture_energy_1": 10.0, "fracture_energy_2": 50.0}])
