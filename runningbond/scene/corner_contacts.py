@@ -14,7 +14,6 @@ from .segments import Joints
 PARALLEL = 1e-3
 """Sine of the angle between a joint and a side up to which the joint lies on that side."""
 
-
 LEAST_OVERLAP = 1e-2
 """Least overlap of a leaning side, relative to the shorter one of the two sides."""
 
