@@ -184,12 +184,10 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
     outlines = [scene.blocks.polygon(owner[k]) if held[k] else points[first_node[k] :][:3] for k in range(len(owner))]
     blocks = Blocks.from_polygons(outlines)
-    between_pieces = np.empty((len(scene.joints) + len(inside[0]), 2), dtype=np.int64)
     _, first = np.unique(joint, return_index=True)
+    between_pieces = np.empty((len(scene.joints) + len(inside[0]), 2), dtype=np.int64)
     between_pieces[joint[first]] = np.column_stack([block[side[first, 0]] for side in sides])
-    for k in np.flatnonzero(scene.joints.at_corner):
-        at = scene.joints.ends[k].mean(axis=0)
-        between_pieces[k] = [_nearest(blocks, owner, int(each), at) for each in scene.joints.block[k]]
+    between_pieces[np.flatnonzero(scene.joints.at_corner)] = _at_corners(scene, blocks, owner)
     inner = scene.joint_materials.index(scene.inner_joint)
     passed_on = partial(PassedOn, wall=scene, owner=owner)
     parted = replace(
@@ -212,6 +210,14 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     shape = _shapes(points, first_node, held)
     interfaces = np.concatenate(sides, axis=1)
     return Pieces(parted, WallMesh(points, first_node, block, shape, triangles, piece, interfaces, joint), owner, node)
+
+
+def _at_corners(scene: Scene, blocks: Blocks, owner: Indices) -> Indices:
+    """Pieces that contacts of single corners hold apart, ``(n, 2)``: of either block the nearest one."""
+    single = scene.joints.at_corner
+    places = zip(scene.joints.block[single].tolist(), scene.joints.ends[single].mean(axis=1), strict=True)
+    found = [[_nearest(blocks, owner, block, at) for block in pair] for pair, at in places]
+    return np.reshape(found, (-1, 2)).astype(np.int64)
 
 
 def _split_nodes(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> tuple[Indices, Indices, Indices]:

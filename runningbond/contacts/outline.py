@@ -61,9 +61,7 @@ class Outline:
         length = np.hypot(*side.T)
         run = side / length[:, None]
         normal = np.column_stack([run[:, 1], -run[:, 0]])
-        before = np.empty_like(after)
-        before[after] = np.arange(len(after))
-        turn = run[before]
+        turn = run[blocks.predecessor]
         exterior = np.arctan2(turn[:, 0] * run[:, 1] - turn[:, 1] * run[:, 0], (turn * run).sum(axis=1))
         inset = np.where(exterior > FLAT, scene.joint.inset, 0.0)
         radius = inset / np.tan(np.maximum(exterior, FLAT) / 2)

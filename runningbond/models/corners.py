@@ -55,9 +55,7 @@ def left_out_corner(model: Model, scene: Scene, outcome: Outcome) -> str:
 
 def corners_on_corners(scene: Scene) -> Touching:
     """Convex corners that touch each other without a joint there, and those of their sides that lie between them."""
-    blocks = scene.blocks
-    before = np.empty_like(blocks.successor)
-    before[blocks.successor] = np.arange(len(before))
+    blocks, before = scene.blocks, scene.blocks.predecessor
     pairs = cKDTree(blocks.vertices).query_pairs(blocks.tolerance, output_type="ndarray").astype(np.int64)
     first, second = pairs[~blocks.reentrant[pairs].any(axis=1) & can_part(blocks, scene.fixed, *pairs.T)].T
     joined, _ = joints_at(scene.joints, blocks, first, second)

@@ -63,6 +63,11 @@ class Blocks:
         return frozen(following, np.int64)
 
     @cached_property
+    def predecessor(self) -> Indices:
+        """Vertex at the start of the edge that ends at each vertex, ``(nv,)``."""
+        return frozen(np.argsort(self.successor), np.int64)
+
+    @cached_property
     def _local(self) -> tuple[Array, Array, Array]:
         """Vertices, their successors and the cross products of both, relative to each block's first vertex.
 

@@ -68,9 +68,7 @@ def _bearing(blocks: Blocks, corner: Indices, side: Indices, run: Array, along: 
     As at finite displacements it is half of the overlap, along the side, of the corner's own side that leans less on
     it, and at most a quarter of the shorter one of the two.
     """
-    before = np.empty_like(blocks.successor)
-    before[blocks.successor] = np.arange(len(before))
-    length, own = np.hypot(*run.T), np.column_stack([corner, before[corner]])
+    length, own = np.hypot(*run.T), np.column_stack([corner, blocks.predecessor[corner]])
     leans = np.abs(run[own, 0] * along[:, None, 1] - run[own, 1] * along[:, None, 0]) / length[own]
     chosen = np.argmin(leans, axis=1)
     facing = own[np.arange(len(own)), chosen]
