@@ -105,7 +105,7 @@ class Outline:
         at = np.minimum(np.searchsorted(key, sought := side_pair(e, f)), len(key) - 1)
         return np.where(key[at] == sought, joint[at], -1)
 
-    @property
+    @cached_property
     def corner_arrays(self) -> Corners:
         """The arrays from which kernels compute the outline's position."""
         blocks = self.blocks

@@ -1,13 +1,15 @@
 """When contacts are searched for again at finite displacements, and how their history is passed on."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from runningbond.contacts.search import Contacts, bearing_length, position_of
+from runningbond.joints.compiled import kernel
 from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
 from runningbond.joints.wall_law import bears_by_area
-from runningbond.scene import Array
+from runningbond.scene import Array, Indices
 
 from .state import PLASTIC_SLIP, State, frames_of, history_free_of_shear
 from .system import BlockSystem, ContactSearch, Interface
@@ -36,6 +38,8 @@ class ContactUpdate:
 
     def __init__(self, system: BlockSystem, search: ContactSearch) -> None:
         self._system, self._search = system, search
+        self._bodies = system.rigid, search.outline.reach
+        self._still = np.zeros(system.rigid.size)
         self._live = self.acceleration(system.live)
         self._drawn = system.ties.accelerations(system.mass, search.outline.reach)
         self._made: list[tuple[Contacts, Interface]] = []
@@ -58,7 +62,8 @@ class ContactUpdate:
 
     def acceleration(self, load: Array) -> float:
         """Largest acceleration of any point of a body under a load ``(nd,)`` [N] alone [m/s²]."""
-        return self._reach((np.abs(load) / self._system.mass)[self._system.rigid], np.zeros(2))
+        far: float = farthest(np.abs(load) / self._system.mass, self._still, *self._bodies, 0.0, 0.0)
+        return far
 
     def steps_until_next_look(self, state: State, dt: float, acceleration: float, multiplier: float = 0.0) -> int:
         """Number of time steps `dt` [s] after which bodies may have moved so far that a contact could be missed.
@@ -66,17 +71,17 @@ class ContactUpdate:
         Zero if they have used up three quarters of that distance. `acceleration` [m/s²] is that by constant loads
         alone; the `multiplier` of the live load adds to it.
         """
-        contacts, rigid = contacts_of(state), state.motion[self._system.rigid]
+        contacts = contacts_of(state)
         way = contacts.margin / 2 - self._search.deformation(state.motion)
-        left = way - self._apart(rigid - contacts.motion.reshape(-1, 3))
+        left = way - apart(state.motion, contacts.motion, *self._bodies)
         if left < way / 4:
             return 0
         drawn = float(self._drawn @ self._system.ties.force(state.motion, state.stretch)) if len(self._drawn) else 0.0
         speed = SPEED_FACTOR * self._travel(state.velocity)
         gain = SPEED_FACTOR * (acceleration + abs(multiplier) * self._live + drawn)
-        root = np.sqrt(speed**2 + 2 * gain * left)
-        time = 2 * left / (speed + root) if root > 0 else np.inf
-        return int(np.clip(time / dt, 1, MOST_STEPS))
+        root = math.sqrt(speed**2 + 2 * gain * left)
+        time = 2 * left / (speed + root) if root > 0 else math.inf
+        return int(min(max(time / dt, 1.0), MOST_STEPS))
 
     def renew(self, state: State, interface: Interface, dt: float) -> Interface:
         """Search for the contacts of a state again, in place, pass on their history and return the interface on them.
@@ -142,17 +147,48 @@ class ContactUpdate:
 
     def _travel(self, velocity: Array) -> float:
         """Upper bound of half the speed at which any two points of bodies separate at a velocity ``(nd,)`` [m/s]."""
-        return self._apart(velocity[self._system.rigid])
+        far: float = apart(velocity, self._still, *self._bodies)
+        return far
 
-    def _apart(self, rigid: Array) -> float:
-        """Upper bound of half the distance by which two points of rigid bodies separate in a motion ``(n, 3)`` [m]."""
-        u, v = rigid[:, 0], rigid[:, 1]
-        return self._reach(rigid, np.array([(u.max() + u.min()) / 2, (v.max() + v.min()) / 2]))
 
-    def _reach(self, rigid: Array, common: Array) -> float:
-        """Upper bound of how far points of bodies move in a motion ``(n, 3)`` relative to a translation ``(2,)``."""
-        beyond = np.hypot(rigid[:, 0] - common[0], rigid[:, 1] - common[1])
-        return float((beyond + np.abs(rigid[:, 2]) * self._search.outline.reach).max())
+@kernel
+def apart(motion: Array, origin: Array, rigid: Indices, reach: Array) -> float:
+    """Upper bound of half the distance by which two points of bodies separate in a motion, as bodies are rigid [m].
+
+    Parameters
+    ----------
+    motion : (nd,)
+        Motion, of which ``rigid`` ``(n, 3)`` are the translations and the rotation of each body.
+    origin : (3 n,)
+        Rigid motion of the bodies before.
+    reach : (n,)
+        Distance of the farthest point of each body from its centroid [m].
+    """
+    x, y = midway(motion, origin, rigid, 0), midway(motion, origin, rigid, 1)
+    far: float = farthest(motion, origin, rigid, reach, x, y)
+    return far
+
+
+@kernel
+def midway(motion: Array, origin: Array, rigid: Indices, axis: int) -> float:
+    """Middle between the smallest and the largest translation of a body along an axis; arguments as in `apart`."""
+    low, high = math.inf, -math.inf
+    for body in range(len(rigid)):
+        moved = motion[rigid[body, axis]] - origin[3 * body + axis]
+        low, high = min(low, moved), max(high, moved)
+    return 0.5 * (low + high)
+
+
+@kernel
+def farthest(motion: Array, origin: Array, rigid: Indices, reach: Array, x: float, y: float) -> float:
+    """Upper bound of how far points of bodies move relative to a translation ``(x, y)``; arguments as in `apart`."""
+    most = 0.0
+    for body in range(reach.size):
+        across = motion[rigid[body, 0]] - origin[3 * body] - x
+        upwards = motion[rigid[body, 1]] - origin[3 * body + 1] - y
+        turned = motion[rigid[body, 2]] - origin[3 * body + 2]
+        most = max(most, math.hypot(across, upwards) + abs(turned) * reach[body])
+    return most
 
 
 def _spread(interface: Interface, state: State, share: Array) -> float:
