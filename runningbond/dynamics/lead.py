@@ -168,6 +168,10 @@ class Lead(ABC):
         """Advice if the answers at two speeds differ by more than a relative tolerance; may be empty."""
         return ""
 
+    def nearer(self, fast: Traverse, slow: Traverse, tolerance: float) -> float | None:
+        """End of a shorter path [m] whose answers at two speeds may differ by less; None if none is in sight."""
+        return None
+
     def shorter(self, traverse: Traverse) -> str:
         """Advice if a traverse failed; may be empty."""
         return ""

@@ -17,7 +17,7 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports
 from runningbond.results.mechanism import fastest_corner
-from runningbond.results.outcome import joined, number
+from runningbond.results.outcome import joined, number, two_digits
 from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
@@ -67,7 +67,7 @@ def collapse_of_led(
     """Apply the displacements of a scene to a wall; arguments not described here are as in `collapse_by_steps`.
 
     `outcome` is the outcome so far. A wall pushed by its live load moves by `distance` [m], by default its smaller
-    side.
+    side, or if that gives no answer, as far as both speeds agree.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower` and
         `upper` enclose the answer by as much as the last halving of the speed has changed it.
     """
-    traverses, self_locking = list[Traverse](), cache(is_self_locking)
+    traverses, self_locking, start, pushed = list[Traverse](), cache(is_self_locking), outcome, run
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
         loaded = put_on_dead_load(resting, criteria, observe)
@@ -117,6 +117,23 @@ def collapse_of_led(
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
+    is_free = distance is None and _is_wide(outcome)
+    nearer = lead.nearer(traverses[-2], traverses[-1], tolerance) if is_free else None
+    if nearer is not None:
+        again = collapse_of_led(
+            start,
+            scene,
+            pushed,
+            tolerance,
+            points=points,
+            point_order=point_order,
+            is_self_locking=self_locking,
+            bears=bears,
+            criteria=criteria,
+            observe=observe,
+            distance=nearer,
+        )
+        return _narrowed(outcome, again, nearer)
     if outcome.status == "undecided" and outcome.upper is None and lead.moves and self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
@@ -281,6 +298,27 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     told += "" if lead.moves or not fell else ", and the answer is that of its last rest"
     message = joined(what + told, lead.doubt(traverse, tolerance))
     return replace(outcome, status="collapse", multiplier=traverse.answer, message=message)
+
+
+def _is_wide(outcome: Outcome) -> bool:
+    """Whether there is a bracket, but no answer."""
+    return outcome.status == "undecided" and None not in (outcome.lower, outcome.upper)
+
+
+def _narrowed(outcome: Outcome, again: Outcome, distance: float) -> Outcome:
+    """The outcome of a push over a shorter `distance` [m], if it lies in the bracket that the whole distance gave.
+
+    Where a wall is borne anew farther on, the shorter push ends before its largest multiplier.
+    """
+    steps = (outcome.steps or 0) + (again.steps or 0)
+    if "interrupted" in again.message:
+        return replace(outcome, steps=steps, message=joined(outcome.message, "interrupted on a shorter path"))
+    lower, answer, upper = outcome.lower, again.multiplier, outcome.upper
+    if lower is None or answer is None or upper is None or not lower <= answer <= upper:
+        return replace(outcome, steps=steps)
+    between = f"{number(lower)} and {number(upper)}"
+    why = f"pushed as far as {two_digits(distance)} m, beyond which it is between {between}"
+    return replace(again, steps=steps, message=joined(again.message, why))
 
 
 def _answer(outcome: Outcome, lead: Lead, traverses: list[Traverse]) -> str:

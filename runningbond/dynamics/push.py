@@ -49,6 +49,9 @@ WINDOWS = 4
 EARLY_PEAK = 0.01
 """Fraction of the path within which only the few short rows, in which a push accelerates, show a peak."""
 
+PEAK_MULTIPLE = 10
+"""Length of a shorter path that shows an early peak, relative to the displacement of that peak."""
+
 RELAXATION_PART = 1e-6
 """Fraction of the distance by which a control point that stays in place moves because its springs relax."""
 
@@ -216,14 +219,26 @@ class Push(Lead):
     def remedy(self, fast: Traverse, slow: Traverse, tolerance: float) -> str:
         """Advice to shorten the path: to where both speeds agree, or if only its first few rows show the peak."""
         curve = self.onward(slow.curve)
-        peak, end = abs(curve[curve[:, 1].argmax(), 0]), np.abs(curve[:, 0]).max()
-        if peak <= EARLY_PEAK * end:
+        if peak := self._early_peak(curve):
             return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
+        if agreed := self._agreed(self.onward(fast.curve), curve, tolerance):
+            most = number(float(curve[: agreed + 1, 1].max()))
+            return f"up to {two_digits(curve[agreed, 0])} m it is {most} at both: a shorter distance answers"
+        return ""
+
+    def nearer(self, fast: Traverse, slow: Traverse, tolerance: float) -> float | None:
+        """A distance within which more rows show an early peak, or up to which both speeds agree."""
+        curve = self.onward(slow.curve)
+        if peak := self._early_peak(curve):
+            return PEAK_MULTIPLE * peak
         agreed = self._agreed(self.onward(fast.curve), curve, tolerance)
-        if agreed == 0 or curve[agreed, 0] > (1 - EARLY_PEAK) * end:
-            return ""
-        most = number(float(curve[: agreed + 1, 1].max()))
-        return f"up to {two_digits(curve[agreed, 0])} m it is {most} at both: a shorter distance answers"
+        return float(curve[agreed, 0]) if agreed else None
+
+    @staticmethod
+    def _early_peak(curve: Array) -> float:
+        """Displacement [m] at the largest multiplier of a curve ``(n, 2)`` if only its first few rows show it; or 0."""
+        peak = abs(float(curve[curve[:, 1].argmax(), 0]))
+        return peak if peak <= EARLY_PEAK * np.abs(curve[:, 0]).max() else 0.0
 
     def shorter(self, traverse: Traverse) -> str:
         """Advice on a traverse that failed after a peak."""
@@ -239,12 +254,16 @@ class Push(Lead):
 
     @staticmethod
     def _agreed(fast: Array, slow: Array, tolerance: float) -> int:
-        """Farthest row of a curve ``(n, 2)`` with a largest load that another speed and a longer path hardly change."""
+        """Farthest row of a curve ``(n, 2)`` with a largest load that another speed and a longer path hardly change.
+
+        Zero if there is none, or if it is at the end of the curve.
+        """
         (other, before), (at, force) = np.maximum.accumulate(fast).T, np.maximum.accumulate(slow).T
         changed = np.abs(np.interp(at, other, before) - force)
         grown = force - np.interp((1 - FINAL_PART) * at, at, force)
         alike = np.maximum(changed, grown) <= tolerance * force
-        return int(np.flatnonzero(alike & (force > 0) & (at > EARLY_PEAK * at[-1]))[-1:].sum())
+        agreed = int(np.flatnonzero(alike & (force > 0) & (at > EARLY_PEAK * at[-1]))[-1:].sum())
+        return agreed if slow[agreed, 0] <= (1 - EARLY_PEAK) * np.abs(slow[:, 0]).max() else 0
 
     def fall(self, traverse: Traverse) -> str:
         """Note on how a wall has fallen at the end of a traverse."""
