@@ -29,7 +29,7 @@ class Spaces:
 
     along: Array  # position along side f [m]
     before: Array  # distance of a point from its neighbours on its side, the one towards the start of f [m],
-    after: Array  # and the other one; 0 at ends of overlaps
+    after: Array  # and the other one; at ends of overlaps as in `_to_points`
     inside: Array  # distance of a point inside the ends of the other block's side [m]; infinite at ends of overlaps
     half: Array  # half the smaller distance of a point from its neighbours [m]
     carries: Mask  # in a joint, and either an end of the overlap or farther inside than a part of `half`
@@ -50,13 +50,16 @@ class Spaces:
         carries = (contacts.joint >= 0) & (~inner | (inside > part * half))
         # Points of side f are numbered along it, those of side e against it.
         before, after = np.where(of_a, previous, following), np.where(of_a, following, previous)
+        towards, low = _to_points(blocks, contacts, at, part), contacts.inwards > 0
+        before, after = np.where(inner | low, before, towards), np.where(inner | ~low, after, towards)
         return cls(along, before, after, np.where(inner, inside, np.inf), half, carries)
 
     def widths(self, joint: Indices) -> Array:
         """Width ``(n,)`` [m] of contacts in joints ``(n,)`` by trapezoids between those that carry; 0 for others.
 
         On a side where the neighbour of a contact is missing, because the blocks lean and it is too far from the other
-        side, its width is that of the undeformed wall.
+        side, its width is as if the neighbour were there. That also holds if all points between the two ends of an
+        overlap are missing: half of the overlap for each would make a corner many times as stiff as before.
         """
         order = np.flatnonzero(self.carries)
         order = order[np.lexsort((self.along[order], joint[order]))]
@@ -158,6 +161,35 @@ class BearingAreas:
     def _excess(self) -> Array:
         """Area ``(n,)`` [m²] of the contacts of the undeformed wall beyond that of their trapezoids."""
         return self.undeformed - self._wide * _thickness(self.blocks, self.contacts)
+
+
+def _to_points(blocks: NodeOutline, contacts: Contacts, at: Array, part: float) -> Array:
+    """Distance ``(n,)`` [m] of ends of overlaps at ``(n, 2)`` from the next point inwards that carries on flat sides.
+
+    Zero if their side has none, and for contacts that are no ends. `part` is that of `Spaces.of`.
+    """
+    outline, (side, along), half = blocks.outline, blocks.places, blocks.points.half
+    e, f = contacts.ends[:, 4:].astype(np.int64).T
+    own_is_f = outline.held[outline.blocks.owner[e]]  # as in `DeformableContacts`, whose points these are
+    own = np.where(own_is_f, f, e)
+    place = np.where(own_is_f, outline.along(f, at, contacts.motion), outline.along(e, at, contacts.motion))
+    # Side e runs against f, and with it the way inwards.
+    way = np.where((contacts.inwards > 0) == own_is_f, 1, -1)
+    points = np.flatnonzero(blocks.bearing)
+    reach = 2 * float(outline.length.max())  # sides one after the other on one line, farther apart than they are long
+    line = side[points] * reach + along[points]
+    # Points are sorted along their sides. One that is too near the end is followed by one that is far enough.
+    sought = own * reach + np.clip(place, 0.0, outline.length[own])
+    first = np.where(way > 0, np.searchsorted(line, sought, "right"), np.searchsorted(line, sought) - 1)
+    found = np.zeros(len(contacts))
+    for step in (1, 0):
+        number = first + step * way
+        there = (number >= 0) & (number < len(points))
+        point = points[np.where(there, number, 0)] if len(points) else np.zeros(len(first), dtype=np.int64)
+        far = way * (along[point] - place)
+        there &= (side[point] == own) & (far > part * half[point])
+        found = np.where(there, far, found)
+    return np.where(contacts.inwards == 0, 0.0, found)
 
 
 def _thickness(blocks: NodeOutline, contacts: Contacts) -> Array:

@@ -32,10 +32,6 @@ from .mass_scaling import ScaledModes, scaled_modes
 from .node_outline import NodeOutline
 from .system import DAMPING, block_system
 
-HALFWAY = 0.5 + 1e-6
-"""Part of the distance to the next point by which a point must be inside the corners' arcs to carry load: one half,
-plus a margin for rounding."""
-
 
 def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSystem:
     """Set up a wall's deformable blocks at finite displacements; `mass_scaling` as in `fem_interface.model.fem`."""
@@ -120,7 +116,7 @@ class DeformableContacts:
         opposed = -(arcs[own, 2:] * arcs[other, 2:]).sum(axis=1)[pair] > np.cos(np.pi / 4)
         # Leave out points that are too near the other side's corners to carry load before they move by the margin.
         inside = np.minimum(along - inset[on, 0], length - inset[on, 1] - along)
-        near = opposed & (np.abs(away) < margin) & (points.half[point] - inside < margin) & self._bearing[point]
+        near = opposed & (np.abs(away) < margin) & (points.half[point] - inside < margin) & self.blocks.bearing[point]
         point, pair, on = point[near], pair[near], on[near]
         rows = (len(outline.radius) + point, on, of_a[pair], after[on], e[pair], f[pair])
         joint = outline.joint_of(e, f)[pair]
@@ -129,32 +125,17 @@ class DeformableContacts:
         return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, joint, still > 0)
 
     @cached_property
-    def _bearing(self) -> Mask:
-        """Which points are half-way to the next one (`HALFWAY`) inside the arcs of their side's corners, ``(ns,)``."""
-        side, along = self._places
-        near_end, far_end = self.blocks.sides.inset[self.blocks.sides.ends].T
-        inside = np.minimum(along - near_end[side], self.blocks.sides.extent[side] - far_end[side] - along)
-        return np.asarray(inside > 2 * HALFWAY * self.blocks.points.half)
-
-    @cached_property
     def _of_ends(self) -> Array:
         """Length ``(nv, 2)`` [m] of each side that its start and its end represent.
 
         It reaches half-way from the last point that does not bear to the first one that does.
         """
-        gap, extent, (side, along) = self.blocks.gap, self.blocks.sides.extent, self._places
-        first = np.where(self._bearing, along - np.roll(gap, 1) / 2, extent[side] / 2)
-        last = np.where(self._bearing, along + gap / 2, extent[side] / 2)
+        gap, extent, (side, along) = self.blocks.gap, self.blocks.sides.extent, self.blocks.places
+        first = np.where(self.blocks.bearing, along - np.roll(gap, 1) / 2, extent[side] / 2)
+        last = np.where(self.blocks.bearing, along + gap / 2, extent[side] / 2)
         start = self.blocks.first[:-1] * self.blocks.parts
         of_start, of_end = np.minimum.reduceat(first, start), extent - np.maximum.reduceat(last, start)
         return np.column_stack([of_start, of_end])
-
-    @cached_property
-    def _places(self) -> tuple[Indices, Array]:
-        """Side of each point, and its distance from the start of that side [m], two ``(ns,)``."""
-        (facet, share, _), nodes = self.blocks.points, self.blocks.nodes
-        side = np.repeat(np.arange(len(self.blocks.first) - 1), np.diff(self.blocks.first))[facet]
-        return side, nodes.begin[facet] + share * nodes.length[facet]
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with new buffers."""

@@ -6,6 +6,7 @@ between the nodes.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,13 +15,17 @@ from runningbond.contacts.outline import Outline
 from runningbond.dynamics.displacements import check_finite
 from runningbond.joints.points import Rule, lobatto
 from runningbond.joints.wall_points import spread_rule, spreads
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices, Mask, Scene
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, SidePoints, Sides
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .templates import nodes_of
+
+HALFWAY = 0.5 + 1e-6
+"""Part of the distance to the next point by which a point must be inside the corners' arcs to carry load: one half,
+plus a margin for rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +72,21 @@ class NodeOutline:
     def scene(self) -> Scene:
         """The wall."""
         return self.wall.scene
+
+    @cached_property
+    def places(self) -> tuple[Indices, Array]:
+        """Side of each point, and its distance from the start of that side [m], two ``(ns,)``."""
+        facet, share, _ = self.points
+        side = np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))[facet]
+        return side, self.nodes.begin[facet] + share * self.nodes.length[facet]
+
+    @cached_property
+    def bearing(self) -> Mask:
+        """Which points are half-way to the next one (`HALFWAY`) inside the arcs of their side's corners, ``(ns,)``."""
+        side, along = self.places
+        near_end, far_end = self.sides.inset[self.sides.ends].T
+        inside = np.minimum(along - near_end[side], self.sides.extent[side] - far_end[side] - along)
+        return np.asarray(inside > 2 * HALFWAY * self.points.half)
 
     def rigid(self, motion: Array) -> Array:
         """Translations and rotation of each block in a motion ``(nd,)``, ``(3 nb,)``."""

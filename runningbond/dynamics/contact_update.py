@@ -141,7 +141,16 @@ class ContactUpdate:
             # Where a block slides off its neighbour, contacts grow by what their neighbours lose, pressed as they are.
             length, less = bearing_length(search.outline, contacts), np.zeros(len(contacts) + 1, dtype=bool)
             less[:-1][still] = length[still] <= bearing_length(search.outline, before)[same[still]] * (1 + SAME_LENGTH)
-            share[less[new_ends]] = np.maximum(1.0, share[less[new_ends]])
+            energy = _borne(interface, opening, slip, history)[1]
+            left = np.append(renewed.area, 0.0)[position_of(new_keys, keys)] / interface.area
+            left[corner[moved]] = 1.0
+            at_end = ends >= 0
+            lost = (interface.area * energy * np.maximum(0.0, 1 - left))[at_end]
+            of_joints = np.zeros(before.joint.max(initial=-1) + 2)
+            np.add.at(of_joints, before.joint[ends[at_end]] + 1, lost)
+            grows = np.flatnonzero(less[new_ends] & (share < 1) & (kept >= 0))
+            wanted, joint = renewed.area[grows] * energy[kept[grows]], contacts.joint[new_ends[grows]]
+            share[grows] = _pressed_as_before(share[grows], wanted, joint, of_joints)
         state.friction += _spread(renewed, state, share)
         return renewed
 
@@ -210,6 +219,25 @@ def _spread(interface: Interface, state: State, share: Array) -> float:
     rest[grown] = part * rest[grown] + (1 - part) * slip[grown]
     _, after = _borne(interface, opening, slip, history)
     return float(interface.area @ (share * before - after))
+
+
+def _pressed_as_before(share: Array, energy: Array, joint: Indices, lost: Array) -> Array:
+    """Shares ``(n,)`` of points' areas that are pressed as before, if they grow by what others of their joint lose.
+
+    The new area that is pressed stores no more than the others did: if blocks lean on a corner, they have borne little.
+
+    Parameters
+    ----------
+    share, energy : (n,) float
+        Areas that points had before, relative to their areas, and the energy that these would store [J].
+    joint : (n,) int
+        Joints of the points, -1 for those of none.
+    lost : (nj + 1,) float
+        Energy of the area that points of each joint have lost [J], first of those of none.
+    """
+    wanted = np.bincount(joint + 1, (1 - share) * energy, len(lost))
+    part = np.divide(lost, wanted, out=np.ones(len(lost)), where=wanted > lost)
+    return np.asarray(share + (1 - share) * np.minimum(1.0, part)[joint + 1])
 
 
 def _borne(interface: Interface, opening: Array, slip: Array, history: Array) -> tuple[Array, Array]:

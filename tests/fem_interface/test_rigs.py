@@ -136,6 +136,25 @@ def test_areas_add_up_to_the_overlap_of_blocks_that_slide(cells: int, slid: floa
     assert (opening[own & (contacts.inwards == 0)] < 1e-9).all()
 
 
+@pytest.mark.parametrize("cells", [1, 3])
+@pytest.mark.parametrize("lean", [0.1, 0.3])
+def test_ends_of_blocks_that_lean_and_slide_do_not_bear_as_wide_as_flat_ones(cells: int, lean: float) -> None:
+    """Not even if all points between them are lost or too far from the other side: each had half of the overlap."""
+    scene = stone(2, 0.2, 0.4, joint__compressive_strength=1e6)
+    found, upper = DeformableContacts(node_outline(scene, cells)), np.flatnonzero(scene.wall)[1]
+    between = int(np.flatnonzero((scene.joints.block == np.flatnonzero(scene.wall)[:2]).all(axis=1))[0])
+    blocks = scene.blocks
+    corner = blocks.vertices[blocks.owner == upper] - blocks.centroid[upper]
+    low = corner[(corner[:, 1] < 0) & (corner[:, 0] > 0)][0]
+    turn = np.array([[math.cos(lean), math.sin(lean)], [-math.sin(lean), math.cos(lean)]])
+    for slid in np.linspace(-0.015, 0.015, 31):
+        motion = np.zeros(len(found.blocks.wall.mass))
+        motion[found.blocks.wall.rigid[upper]] = *(low - turn @ low + [slid, -1e-5]), -lean
+        contacts = found.bearing(found.find(motion, found.outline.margin))
+        own = contacts.joint == between
+        assert contacts.area[own].max() < 0.2 * scene.joints.length[between] * scene.thickness
+
+
 def test_points_between_nodes_move_with_mesh() -> None:
     """On the straight line between two mesh nodes, for any motion."""
     scene = stone(2, 0.2, wall__courses=[[1, 1], [0.5, 1, 0.5]], joint__compressive_strength=1e6)
