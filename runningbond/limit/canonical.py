@@ -57,13 +57,28 @@ class Order:
             strength=PointStrength(_significant(strength.friction[self.points]), tension, shear),
             opening=ordered(system.opening, self.points),
             slip=ordered(system.slip, self.points, self.side),
-            reaction=ordered(system.reaction, self.reactions),
+            reaction=self._unit_reactions(system),
             tie=ordered(system.tie, self.ties),
             tie_yield=_significant(system.tie_yield[self.ties]),
             dead=np.round(self.sign * system.dead[self.rows], ENTRY_DECIMALS),
             live=np.round(self.sign * system.live[self.rows], ENTRY_DECIMALS),
             scale=system.scale[self.rows],
         )
+
+    def _unit_reactions(self, system: Equilibrium) -> csc_array:
+        """Reactions that do not show the size of the wall, nor whether it is mirrored.
+
+        Those that only prevent a rotation are measured in forces on an arm of a block's size; those that may have
+        either sense have the one in which their columns begin with a positive entry.
+        """
+        pins, late = system.scene.pins, system.scene.late_pins
+        moves = np.abs(np.concatenate([pins.direction, late.direction])).max(axis=1)[self.reactions]
+        size = float(np.sqrt(system.scene.blocks.area[~system.scene.fixed].max()))
+        columns = csc_array(diags_array(self.sign) @ system.reaction[self.rows][:, self.reactions])
+        columns = rounded(csc_array(columns @ diags_array(np.where(moves > 0, 1.0, size))))
+        sense = np.sign(columns.data[columns.indptr[:-1]])
+        columns.data *= np.repeat(np.where(self.reactions < len(pins), sense, 1.0), np.diff(columns.indptr))
+        return columns
 
     def places(self, scene: Scene) -> Array:
         """Centroids of the movable blocks ``(n, 2)`` [m] in this order, mirrored if the order is."""
@@ -127,11 +142,16 @@ def canonical_order(system: Equilibrium) -> Order:
         in_order(np.column_stack([rank[each.block], places(each.point, side), np.abs(each.direction)]))
         for each in (scene.pins, scene.late_pins)
     ]
+    # Two joints of a block with fixed blocks, which have one rank, may end at the same point.
+    strength = system.strength
+    strengths = np.column_stack([_significant(x) for x in (strength.friction, strength.tension, strength.shear)])
+    outwards = np.where(rank[points.block[:, :1]] <= rank[points.block[:, 1:]], 1.0, -1.0)
+    normals = np.round(outwards * points.normal * (side, 1.0), PLACE_DECIMALS) + 0.0
     held = np.concatenate([pins[0], len(pins[0]) + pins[1]])[: system.reaction.shape[1]]
     return Order(
         side,
         np.concatenate([(3 * blocks[:, None] + np.arange(3)).ravel(), rest]),
-        in_order(np.hstack([pair, places(points.position, side)])),
+        in_order(np.hstack([pair, places(points.position, side), strengths, normals])),
         ties,
         held.astype(np.int64),
         np.concatenate([np.tile([side, 1.0, side], n), np.ones(len(rest))]),

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,10 +23,11 @@ from runningbond.limit.search_log import SearchLog
 from runningbond.limit.starts import ROUND, Start
 from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
-from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
+from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene, scene_from_dict
 from tests.checker import check
 from tests.limit.test_limit import pile, rectangle
-from tests.walls import panel
+from tests.random_scenes import mirrored as mirror_image
+from tests.walls import content, panel
 
 SIZE, CELLS = 2.0, 5
 
@@ -170,6 +172,44 @@ def test_ordered_equations_are_identical_to_last_bit(mirrored: bool) -> None:
         assert (getattr(one, name).toarray() == getattr(other, name).toarray()).all(), name
     assert (one.dead == other.dead).all()
     assert (one.live == other.live).all()
+
+
+def same_numbers(one: dict[str, Any], other: dict[str, Any]) -> None:
+    """Assert that the ordered equations of two walls are equal to the last bit."""
+    systems = [equilibrium(scene_from_dict(tables)).under_live_load() for tables in (one, other)]
+    first, second = (canonical_order(system).applied(system) for system in systems)
+    for name in ("opening", "slip", "reaction", "tie"):
+        assert (getattr(first, name).toarray() == getattr(second, name).toarray()).all(), name
+    for name in ("friction", "tension", "shear"):
+        assert (getattr(first.strength, name) == getattr(second.strength, name)).all(), name
+
+
+def test_ordered_equations_ignore_size_of_wall_under_a_level_beam() -> None:
+    """The reaction that keeps a beam level is a moment, the others are forces."""
+    beam = {"height": 0.2, "condition": "fixed-height", "force": [0.0, -100.0]}
+    sizes = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.1}
+    large = {name: 3.7 * size for name, size in sizes.items()}
+    same_numbers(
+        content(wall=sizes | {"courses": [[1, 1], [0.5, 1, 0.5]]}, beam=beam),
+        content(
+            wall=large | {"courses": [[1, 1], [0.5, 1, 0.5]]},
+            beam=beam | {"height": 3.7 * 0.2, "force": [0.0, -100.0 * 3.7**3]},
+        ),
+    )
+
+
+@pytest.mark.parametrize("kind", ["fixed-first-course", "pinned-corners"])
+def test_ordered_equations_ignore_mirroring_on_any_support(kind: str) -> None:
+    """Joints of several lengths with fixed blocks end at one point, and horizontal reactions change their sign."""
+    wall = {"block_width": 1.0, "block_height": 0.25, "thickness": 0.1}
+    courses = [[0.5, 0.75, 1, 0.75], [1, 1.25, 0.75], [0.5, 2, 0.5]]
+    tables = content(
+        wall=wall | {"courses": courses},
+        joint={"friction": 0.7, "cohesion": 1e4},
+        support={"kind": kind},
+        load={"gravity": 9.81, "live": {"kind": "point", "at": [2.4, 0.75], "force": [3.0, -1.0]}},
+    )
+    same_numbers(tables, mirror_image(tables))
 
 
 def test_motion_of_ordered_equations_is_restored() -> None:
