@@ -174,18 +174,31 @@ class Wall:
                 total += self.on_blocks(block, middle, (high - low) * length * force)
         return total
 
+    def in_box(self, box: Any) -> np.ndarray:
+        """Whether supports move with a settlement's box, ``(nb,)``; halves of a block that may crack move together.
+
+        Supports with their middle on a side of the box, or that only touch it, do not move, nor does ground above it.
+        """
+        (x0, y0), (x1, y1) = np.array(box) + [[self.gap], [-self.gap]]
+        bottom, top = (np.array([pick(outline[:, 1]) for outline in self.outlines]) for pick in (np.min, np.max))
+        inside = np.zeros(self.n, dtype=bool)
+        for k, part in enumerate(self.scene.part_of):
+            body = self.scene.part_of == part if part >= 0 else np.arange(self.n) == k
+            middle = self.area[body] @ self.centre[body, 0] / self.area[body].sum()
+            level = ((bottom < y1) & (top > y0))[body].any()
+            inside[k] = x0 < middle < x1 and level and (self.scene.wall[k] or top[k] < box[1][1] + 2 * self.gap)
+        return inside
+
     def support_motion(self) -> np.ndarray:
         """Motion of the supports at λ = 1, ``(nb, 3)``; zero for all other blocks."""
         motion = np.zeros((self.n, 3))
         for load in self.scene.load.live:
             if load.part == "Settlement":
-                (x0, _), (x1, y1) = load.box
                 about = np.mean(load.box, axis=0) if load.about is None else np.array(load.about)
                 turn = math.radians(load.rotation_angle)
-                for k in np.flatnonzero(self.fixed):
+                for k in np.flatnonzero(self.fixed & self.in_box(load.box)):
                     arm = self.centre[k] - about
-                    if x0 < self.centre[k, 0] < x1 and self.outlines[k][:, 1].min() < y1:
-                        motion[k] = load.by[0] - turn * arm[1], load.by[1] + turn * arm[0], turn
+                    motion[k] = load.by[0] - turn * arm[1], load.by[1] + turn * arm[0], turn
         return motion
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,8 +28,9 @@ from runningbond.scene import (
     Tie,
     build_scene,
 )
+from tests.checker import check
 from tests.limit.test_limit import rectangle
-from tests.walls import panel
+from tests.walls import courses, panel
 
 MODELS = ("limit", "limit-nonassociated")
 BOTH = pytest.mark.parametrize("model", MODELS)
@@ -551,3 +553,17 @@ def test_tie_pulls_and_held_forces_are_stored(tmp_path: Any) -> None:
     found, _ = load_outcome(tmp_path)
     assert found.pull.tolist() == [[1.0], [2.0]]
     assert found.held.tolist() == [[3.0]]
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_checker_knows_supports_with_their_middle_on_a_side_of_the_box(model: str, tmp_path: Path) -> None:
+    """Block 3, with its middle at 1.4, stays; sums of coordinates give 1.4000000000000001."""
+    scene = courses(
+        [[1, 1, 1, 1, 1], [0.5, 1, 1, 1, 1, 0.5]],
+        support={"kind": "fixed-first-course"},
+        load__live={"kind": "settlement", "box": [[1.4, -9.0], [9.0, 0.01]], "by": [0.0, -0.01]},
+    )
+    outcome = run_model(model, scene)
+    assert outcome.status == "collapse"
+    save_outcome(outcome, tmp_path, scene=scene)
+    assert check(tmp_path)
