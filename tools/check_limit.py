@@ -473,7 +473,9 @@ class Result:
             moving = np.abs(self.support).max(axis=1) > 0
             work = float((self.inner * self.support)[moving].sum())
             found["share of the support"] = abs(work / (self.settlement * self.weight) - here)
-        least = self.nothing / float(np.abs(self.live).max(initial=0.0) or 1.0)
+        # A load or a share of the support that is zero is a rounding error, with no size of its own.
+        largest = max(self.nothing, LARGEST_ERROR * float(np.abs(self.dead[free]).max(initial=0.0)))
+        least = LARGEST_ERROR if self.settles else largest / float(np.abs(self.live).max(initial=0.0) or 1.0)
         unit = max(abs(by_dead / by_live) + abs(spent / by_live) + abs(here), least) or 1.0
         backwards = by_live >= 0 if self.settles else by_live <= 0
         return {name: value / unit for name, value in found.items()} | {"a load against the motion": float(backwards)}

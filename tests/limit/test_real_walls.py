@@ -567,3 +567,16 @@ def test_checker_knows_supports_with_their_middle_on_a_side_of_the_box(model: st
     assert outcome.status == "collapse"
     save_outcome(outcome, tmp_path, scene=scene)
     assert check(tmp_path)
+
+
+def test_checker_accepts_a_support_that_carries_nothing(tmp_path: Path) -> None:
+    """Part of the wall leaves with the ground; the share 0 is a sum of rounding errors."""
+    ground = {"kind": "settlement", "box": [[0.2, -9.0], [9.0, 0.01]], "by": [0.01, 0.0]}
+    scene = courses([[1, 1], [0.5, 1, 0.5]], joint__friction=0.65, load__live=ground)
+    outcome = run_model("limit-nonassociated", scene)
+    assert outcome.multiplier == pytest.approx(0.0, abs=1e-12)
+    save_outcome(outcome, tmp_path / "right", scene=scene)
+    assert check(tmp_path / "right")
+    wrong = replace(outcome, multiplier=1e-9, upper=1e-9)
+    save_outcome(wrong, tmp_path / "wrong", scene=scene)
+    assert not check(tmp_path / "wrong")
