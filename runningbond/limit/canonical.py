@@ -5,7 +5,9 @@ and on the last bits of its numbers. A search that starts from such vertices the
 and its mirror image only if both have the same numbers.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csc_array, diags_array
@@ -108,51 +110,96 @@ def _significant(values: Array) -> Array:
 
 
 def canonical_order(system: Equilibrium) -> Order:
-    """Order blocks by position and load, and mirror the wall if its mirror image comes first in that order."""
-    scene, points = system.scene, system.points
-    free = np.flatnonzero(~scene.fixed)
-    unit, n = float(np.sqrt(scene.blocks.area[free].max())), len(free)
-    spread = points.position if len(points) else scene.blocks.vertices
-    loads = np.hstack([part[: 3 * n].reshape(n, 3) for part in (system.live, system.dead)])
+    """Order the items of a wall, or of its mirror image if that comes first, by their rows in the tables of `_View`."""
+    wall, image = _View(system, 1.0), _View(system, -1.0)
+    for own, mirrored in zip(wall.tables(), image.tables(), strict=True):
+        if own != mirrored:
+            return wall.order() if own < mirrored else image.order()
+    return wall.order()
 
-    def places(at: Array, side: float) -> Array:
-        corner = (side * spread[:, 0]).min(), spread[:, 1].min()
-        return np.asarray(np.round((at * (side, 1.0) - corner) / unit, PLACE_DECIMALS) + 0.0)
 
-    def table(side: float) -> Array:
-        turned = np.round(loads * np.tile([side, 1.0, side], 2), PLACE_DECIMALS) + 0.0
-        return np.hstack([places(scene.blocks.centroid[free], side), turned])
+class _View:
+    """A wall, seen from the front or, with `side` −1, from behind: tables of its blocks, points, ties and pins."""
 
-    def in_order(keys: Array) -> Indices:
-        return np.lexsort(keys.T[::-1])
+    def __init__(self, system: Equilibrium, side: float) -> None:
+        self.system, self.scene, self.side = system, system.scene, side
+        self.free = np.flatnonzero(~self.scene.fixed)
+        self.unit = float(np.sqrt(self.scene.blocks.area[self.free].max()))
+        spread = system.points.position if len(system.points) else self.scene.blocks.vertices
+        self.corner = (side * spread[:, 0]).min(), spread[:, 1].min()
 
-    def listed(side: float) -> list[list[float]]:
-        rows = table(side)
-        return [list(row) for row in rows[in_order(rows)]]
+    def tables(self) -> Iterator[list[list[float]]]:
+        """Tables with their rows in order; most walls differ from their mirror image in the first one already."""
+        for table in (self.blocks, self.points, self.ties, *self.pins):
+            yield table[_in_order(table)].tolist()
 
-    side = min((1.0, -1.0), key=listed)
-    blocks = in_order(table(side))
-    rank = np.full(len(scene.blocks), n)
-    rank[free[blocks]] = np.arange(n)
-    rest = np.arange(3 * n, system.freedoms)
-    pair = np.sort(rank[points.block], axis=1)
-    ends = places(scene.ties.ends.reshape(-1, 2), side).reshape(-1, 4)
-    ties = in_order(np.hstack([ends[:, ::2].sum(axis=1)[:, None], ends[:, 1::2].sum(axis=1)[:, None], abs(ends)]))
-    pins = [
-        in_order(np.column_stack([rank[each.block], places(each.point, side), np.abs(each.direction)]))
-        for each in (scene.pins, scene.late_pins)
-    ]
-    # Two joints of a block with fixed blocks, which have one rank, may end at the same point.
-    strength = system.strength
-    strengths = np.column_stack([_significant(x) for x in (strength.friction, strength.tension, strength.shear)])
-    outwards = np.where(rank[points.block[:, :1]] <= rank[points.block[:, 1:]], 1.0, -1.0)
-    normals = np.round(outwards * points.normal * (side, 1.0), PLACE_DECIMALS) + 0.0
-    held = np.concatenate([pins[0], len(pins[0]) + pins[1]])[: system.reaction.shape[1]]
-    return Order(
-        side,
-        np.concatenate([(3 * blocks[:, None] + np.arange(3)).ravel(), rest]),
-        in_order(np.hstack([pair, places(points.position, side), strengths, normals])),
-        ties,
-        held.astype(np.int64),
-        np.concatenate([np.tile([side, 1.0, side], n), np.ones(len(rest))]),
-    )
+    @cached_property
+    def blocks(self) -> Array:
+        """Place and loads of each movable block, ``(n, 8)``."""
+        n = len(self.free)
+        loads = np.hstack([part[: 3 * n].reshape(n, 3) for part in (self.system.live, self.system.dead)])
+        turned = np.round(loads * np.tile([self.side, 1.0, self.side], 2), PLACE_DECIMALS) + 0.0
+        return np.hstack([self._places(self.scene.blocks.centroid[self.free]), turned])
+
+    @cached_property
+    def rank(self) -> Indices:
+        """Place of each block in the order, ``(nb,)``; all fixed blocks come last, with one rank."""
+        rank = np.full(len(self.scene.blocks), len(self.free))
+        rank[self.free[_in_order(self.blocks)]] = np.arange(len(self.free))
+        return rank
+
+    @cached_property
+    def points(self) -> Array:
+        """Blocks, place, strength and normal of each point, ``(np, 9)``, and its jump if a support moves.
+
+        Two joints of a block with fixed blocks may end at the same point.
+        """
+        points, strength = self.system.points, self.system.strength
+        strengths = [_significant(part) for part in (strength.friction, strength.tension, strength.shear)]
+        rank = self.rank[points.block]
+        outwards = np.where(rank[:, :1] <= rank[:, 1:], self.side, -self.side)
+        columns = [np.sort(rank, axis=1), self._places(points.position), np.column_stack(strengths)]
+        columns += [np.round(outwards * points.normal * (1.0, self.side), PLACE_DECIMALS) + 0.0]
+        if self.system.has_support:
+            jumps = np.column_stack([part[[-1]].toarray()[0] for part in (self.system.opening, self.system.slip)])
+            columns += [np.round(jumps * (1.0, self.side), PLACE_DECIMALS) + 0.0]
+        return np.hstack(columns)
+
+    @cached_property
+    def ties(self) -> Array:
+        """Ends and yield force of each tie, ``(nt, 7)``."""
+        ends = self._places(self.scene.ties.ends.reshape(-1, 2)).reshape(-1, 4)
+        middle = np.column_stack([ends[:, ::2].sum(axis=1), ends[:, 1::2].sum(axis=1)])
+        return np.column_stack([middle, abs(ends), _significant(self.system.tie_yield)])
+
+    @cached_property
+    def pins(self) -> tuple[Array, Array]:
+        """Block, place and direction of pins, of all loads and of the live load, ``(n, 5)`` each."""
+        first, late = (
+            np.column_stack([self.rank[pins.block], self._places(pins.point), np.abs(pins.direction)])
+            for pins in (self.scene.pins, self.scene.late_pins)
+        )
+        return first, late
+
+    def order(self) -> Order:
+        """Order of the equations and unknowns."""
+        side, n = self.side, len(self.free)
+        blocks, rest = _in_order(self.blocks), np.arange(3 * n, self.system.freedoms)
+        first, late = (_in_order(pins) for pins in self.pins)
+        held = np.concatenate([first, len(first) + late])[: self.system.reaction.shape[1]]
+        return Order(
+            side,
+            np.concatenate([(3 * blocks[:, None] + np.arange(3)).ravel(), rest]),
+            _in_order(self.points),
+            _in_order(self.ties),
+            held.astype(np.int64),
+            np.concatenate([np.tile([side, 1.0, side], n), np.ones(len(rest))]),
+        )
+
+    def _places(self, at: Array) -> Array:
+        return np.asarray(np.round((at * (self.side, 1.0) - self.corner) / self.unit, PLACE_DECIMALS) + 0.0)
+
+
+def _in_order(table: Array) -> Indices:
+    """Row numbers of a table in lexicographic order of its rows."""
+    return np.lexsort(table.T[::-1])

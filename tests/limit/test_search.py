@@ -212,6 +212,28 @@ def test_ordered_equations_ignore_mirroring_on_any_support(kind: str) -> None:
     same_numbers(tables, mirror_image(tables))
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {
+            "load": {
+                "gravity": 9.81,
+                "live": {"kind": "settlement", "box": [[0.9, -9.0], [9.0, 0.01]], "by": [-0.2, -0.5]},
+            }
+        },
+        {"joints": {"rough": {"friction": 0.9}}, "assign": [{"joint": "rough", "box": [[0.0, 0.0], [1.0, 0.4]]}]},
+        {"tie": [{"from": [0.25, 0.375], "to": [-1.0, 0.375], "area": 1e-4, "young": 2e11, "yield": 5.0}]},
+    ],
+    ids=["support", "joints", "tie"],
+)
+def test_ordered_equations_ignore_mirroring_where_blocks_and_loads_are_symmetric(changes: dict[str, Any]) -> None:
+    """Then joints, ties, or the support that moves, choose between a wall and its mirror image."""
+    wall = {"block_width": 1.0, "block_height": 0.25, "thickness": 0.1, "courses": [[1, 1], [0.5, 1, 0.5]]}
+    down = {"kind": "point", "at": [1.0, 0.5], "force": [0.0, -1.0]}
+    tables = content(wall=wall, **({"load": {"gravity": 9.81, "live": down}} | changes))
+    same_numbers(tables, mirror_image(tables))
+
+
 def test_motion_of_ordered_equations_is_restored() -> None:
     system = equilibrium(rubble(1))
     order = canonical_order(system)
