@@ -24,7 +24,7 @@ from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
-from runningbond.limit.kinematics import sliding_dilates
+from runningbond.limit.kinematics import is_determinate, sliding_dilates
 from runningbond.models import MODELS
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
@@ -347,11 +347,45 @@ def test_undecided_draws_are_left_out() -> None:
 
 @pytest.mark.parametrize("n", [1, 3])
 def test_toppling_stack_is_proved_by_limit_analysis_alone(n: int) -> None:
-    """λ = b / (n h); nothing slides, so forces and mechanism are also valid without dilatancy."""
+    """λ = b / (n h); nothing slides, so forces and mechanism also hold without dilatancy, and no others exist."""
     scene = courses([[1]] * n, joint__friction=3.0, **STIFF)
     advice = advise(scene)
     assert climbed(advice) == ["homog", "limit"]
     assert advice.outcome().multiplier == pytest.approx(0.4 / (n * 0.175), rel=1e-6)
+
+
+def test_toppling_without_sliding_excludes_no_smaller_load_of_a_bonded_wall() -> None:
+    """The wall topples as a whole at its bound, but with other forces the blocks at its end topple at half of that."""
+    scene = courses([[1, 1], [0.5, 1, 0.5]], joint__friction=3.0, **STIFF)
+    bound = limit(scene)
+    assert bound.upper is not None
+    assert bound.upper == pytest.approx(0.8 / 0.35, rel=1e-6)
+    assert not sliding_dilates(scene, bound.motion)
+    assert not is_determinate(scene)
+    advice = advise(scene)
+    assert climbed(advice) == ["homog", "limit", "limit-nonassociated", "dem-static"]
+    found = advice.outcome()
+    assert found.lower is not None
+    assert found.upper is not None
+    assert found.lower <= 0.2 / 0.175 <= found.upper < 0.55 * bound.upper
+
+
+@pytest.mark.parametrize(
+    ("pattern", "changes", "determinate"),
+    [
+        ([[1], [1], [1]], {}, True),
+        ([[1], [1], [1]], {"support": {"kind": "corners"}}, False),
+        ([[1], [1]], {"beam": {"height": 0.2, "condition": "free"}}, True),
+        ([[1], [1]], {"beam": {"height": 0.2, "condition": "level"}}, False),
+        ([[1, -1, 1]], {}, True),
+        ([[1, 1]], {}, False),
+        ([[1, -1, 1], [3]], {}, False),
+    ],
+)
+def test_forces_follow_from_balance_in_stacks_only(
+    pattern: list[list[float]], changes: dict[str, Any], determinate: bool
+) -> None:
+    assert is_determinate(courses(pattern, **changes)) == determinate
 
 
 def test_sliding_block_is_not_proved_by_limit_analysis() -> None:

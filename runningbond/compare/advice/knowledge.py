@@ -8,7 +8,7 @@ import numpy as np
 
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement
-from runningbond.limit.kinematics import sliding_dilates
+from runningbond.limit.kinematics import is_determinate, sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
@@ -68,6 +68,7 @@ class Knowledge:
         self.cracks = may_crack and not len(scene.ties) and None not in moduli
         self.halves = may_crack and not self.cracks
         materials = self.scene.materials_of_joints
+        self.frictionless = not any(each.friction for each in materials)
         self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
         self.gives_way = any(each.compressive_fracture_energy is not None for each in materials)
@@ -88,7 +89,7 @@ class Knowledge:
             weakens = self.softens or self.gives_way or self.cracks
             # The wall is in equilibrium without live load, and collapses under any live load.
             nothing = outcome.upper <= 0
-            if not weakens and (nothing or not sliding_dilates(self.scene, outcome.motion)):
+            if not weakens and (nothing or self.frictionless or self._is_only_load(outcome)):
                 self._answer("proof", outcome, outcome.lower)
         elif model.kind == "certificate":
             certified = outcome
@@ -102,6 +103,10 @@ class Knowledge:
             falls = [each.upper if each.fall is None else each.fall for each in draws or (outcome,) if each.upper]
             self.draws = max(1, len(falls))
             self._follow(outcome, min(falls, default=outcome.upper))
+
+    def _is_only_load(self, bound: Outcome) -> bool:
+        """Whether a collapse without sliding, which needs no dilatancy, excludes collapses at smaller loads."""
+        return is_determinate(self.scene) and not sliding_dilates(self.scene, bound.motion)
 
     @property
     def histories(self) -> list[Model]:

@@ -67,8 +67,11 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
         reason = f"joints soften, which {' and '.join(others)} do not take into account"
         return Step(softening[0], f"{bound}; {reason}")
     if known.evidence == "proof":
-        nothing = "nothing slides with friction on a closed joint, so dilatancy has no influence"
-        return _enough(known, "it carries none of the live load" if known.bound == 0.0 else nothing)
+        if known.bound == 0.0:
+            return _enough(known, "it carries none of the live load")
+        why = "forces in joints follow from balance alone, and nothing slides with friction on a closed joint"
+        why = "no joint has friction" if known.frictionless else why
+        return _enough(known, f"{why}: dilatancy has no influence")
     model, why = _history(known)
     if known.crushes:
         return Step(model, f"{bound}; joints crush, which certificates do not include: {why}")
