@@ -306,19 +306,24 @@ def _is_wide(outcome: Outcome) -> bool:
 
 
 def _narrowed(outcome: Outcome, again: Outcome, distance: float) -> Outcome:
-    """The outcome of a push over a shorter `distance` [m], if it lies in the bracket that the whole distance gave.
+    """The outcome of a push over a shorter `distance` [m], if its bracket overlaps that of the whole distance.
 
     Where a wall is borne anew farther on, the shorter push ends before its largest multiplier.
     """
     steps = (outcome.steps or 0) + (again.steps or 0)
     if "interrupted" in again.message:
         return replace(outcome, steps=steps, message=joined(outcome.message, "interrupted on a shorter path"))
-    lower, answer, upper = outcome.lower, again.multiplier, outcome.upper
-    if lower is None or answer is None or upper is None or not lower <= answer <= upper:
+    (low, high), (least, most) = _bounds(outcome), _bounds(again)
+    if again.multiplier is None or not (least <= high and low <= most):
         return replace(outcome, steps=steps)
-    between = f"{number(lower)} and {number(upper)}"
-    why = f"pushed as far as {two_digits(distance)} m, beyond which it is between {between}"
-    return replace(again, steps=steps, message=joined(again.message, why))
+    whole = f"over the whole distance it is between {number(low)} and {number(high)}"
+    return replace(again, steps=steps, message=joined(again.message, f"pushed to {two_digits(distance)} m: {whole}"))
+
+
+def _bounds(outcome: Outcome) -> tuple[float, float]:
+    """The bracket of an outcome; NaN for a bound that there is not."""
+    lower, upper = (np.nan if bound is None else bound for bound in (outcome.lower, outcome.upper))
+    return lower, upper
 
 
 def _answer(outcome: Outcome, lead: Lead, traverses: list[Traverse]) -> str:

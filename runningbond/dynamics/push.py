@@ -49,7 +49,7 @@ WINDOWS = 4
 EARLY_PEAK = 0.01
 """Fraction of the path within which only the few short rows, in which a push accelerates, show a peak."""
 
-PEAK_MULTIPLE = 10
+PEAK_MULTIPLE = 5
 """Length of a shorter path that shows an early peak, relative to the displacement of that peak."""
 
 RELAXATION_PART = 1e-6

@@ -14,6 +14,7 @@ from fem_interface.model import fem
 from runningbond import Wall
 from runningbond.dynamics import Run, State, Unstable
 from runningbond.dynamics.contact_update import ContactUpdate
+from runningbond.dynamics.led import _narrowed
 from runningbond.dynamics.push import Push
 from runningbond.dynamics.traverse import Traverse, TraverseRow
 from runningbond.joints import wall_points
@@ -245,15 +246,15 @@ def pushed_along(curve: Array) -> Traverse:
 
 
 @pytest.mark.parametrize(
-    ("peak", "late", "said"),
+    ("peak", "late", "said", "nearer"),
     [
-        (8.9e-5, 0.3, "the peak is at 8.9e-05 m: a shorter distance"),
-        (0.01, 0.3, ""),
-        (0.01, 0.5, "up to 0.15 m it is 0.4000 at both: a shorter distance"),
+        (8.9e-5, 0.3, "the peak is at 8.9e-05 m: a shorter distance", 5 * 8.9e-5),
+        (0.01, 0.3, "", None),
+        (0.01, 0.5, "up to 0.15 m it is 0.4000 at both: a shorter distance", 0.15),
     ],
 )
 def test_message_asks_for_shorter_distance_if_peak_is_at_start_or_speeds_part(
-    peak: float, late: float, said: str
+    peak: float, late: float, said: str, nearer: float | None
 ) -> None:
     nothing: Any = None
     lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
@@ -262,6 +263,45 @@ def test_message_asks_for_shorter_distance_if_peak_is_at_start_or_speeds_part(
         fast, slow = (pushed_along(np.vstack([curve[:-1], [0.2, end]]) * (side, 1.0)) for end in (0.3, late))
         assert lead.remedy(fast, slow, 0.01).startswith(said)
         assert bool(lead.remedy(fast, slow, 0.01)) == bool(said)
+        assert lead.nearer(fast, slow, 0.01) == pytest.approx(nearer)
+
+
+def test_push_without_a_distance_finds_its_early_peak_on_a_shorter_path() -> None:
+    """A glued block tears off within a thousandth of the way on which it topples; each speed shows another peak."""
+    size = {"length": 1.0, "height": 2.0, "block_width": 1.0, "block_height": 2.0, "thickness": 0.12}
+    energies = {"joint__fracture_energy_1": 2.0, "joint__fracture_energy_2": 2.0}
+    strength = {"joint__cohesion": 5e4, "joint__tensile_strength": 3e4, **energies}
+    stiff = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 1e10}
+    scene = panel(wall=size, **strength, **stiff)
+    free, near = (dem_dynamic(scene, displacements="finite", budget=200_000, distance=d) for d in (None, 0.0012))
+    assert free.status == near.status == "collapse"
+    assert free.multiplier == pytest.approx(near.multiplier, rel=0.005)
+    assert "; pushed to 0.0012 m: over the whole distance it is between" in free.message
+    assert (free.steps or 0) > 2 * (near.steps or 0)
+    far = dem_dynamic(scene, displacements="finite", budget=200_000, distance=1.0)
+    assert (far.status, far.multiplier) == ("undecided", None)
+    assert "a shorter distance shows it" in far.message
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "message", "status"),
+    [
+        (0.64, 0.66, "", "collapse"),
+        (0.1, 0.2, "", "undecided"),  # the wall is borne anew farther on, and bears more
+        (0.8, 0.9, "", "undecided"),
+        (0.64, 0.66, "interrupted: the path so far", "undecided"),
+    ],
+)
+def test_shorter_push_counts_if_it_agrees_with_the_whole_path(
+    lower: float, upper: float, message: str, status: str
+) -> None:
+    whole = Outcome("wall", "dem-dynamic", "undecided", lower=0.62, upper=0.68, steps=7, message="no answer")
+    answer = (lower + upper) / 2
+    near = Outcome("wall", "dem-dynamic", "collapse", answer, lower=lower, upper=upper, steps=5, message=message)
+    narrowed = _narrowed(whole, near, 0.18)
+    assert (narrowed.status, narrowed.steps) == (status, 12)
+    assert narrowed.multiplier == (answer if status == "collapse" else None)
+    assert ("interrupted" in narrowed.message) == bool(message)
 
 
 def test_message_reports_peak_before_wall_lands_on_ground() -> None:
