@@ -476,6 +476,7 @@ def test_result_folders_do_not_hide_published_scenes(tmp_path: Path, monkeypatch
     assert command(["run", "panel-04", "--model", "homog"]) == 0
 
 
+@pytest.mark.long
 def test_killed_worker_does_not_stop_the_other_cases(tmp_path: Path) -> None:
     """Killed as by the kernel if memory runs out; the other cases are still computed."""
     process = start(tmp_path, "panel-11", "panel-04", "wall-w3", "--models", "limit,limit-nonassociated")

@@ -9,7 +9,6 @@ import sys
 import pytest
 
 from runningbond.compare.published import PUBLISHED
-from tests.at_length import at_length
 
 BRACKET = """
 import json, sys
@@ -64,8 +63,6 @@ WIDE = {"OPENBLAS_NUM_THREADS": "2"}
 """The machine's own registers and more than one thread, whatever the tests are run with."""
 
 MODELS = ("limit-nonassociated", "dem-static", "dem-dynamic", "fem")
-QUICK = ["panel-04:limit-nonassociated", "panel-04:dem-static"]
-"""Cells that two processes compute together, because to start them takes longer."""
 CASES = [f"{case.name}:{model}" for case in PUBLISHED for model in MODELS]
 
 
@@ -80,10 +77,11 @@ x86 = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="
 
 
 @x86
-@pytest.mark.parametrize("cells", [QUICK, *at_length(*([cell] for cell in CASES if cell not in QUICK))], ids=" ".join)
-def test_brackets_do_not_depend_on_the_width_of_registers(cells: list[str]) -> None:
+@pytest.mark.long
+@pytest.mark.parametrize("cell", CASES)
+def test_brackets_do_not_depend_on_the_width_of_registers(cell: str) -> None:
     """Status, bracket and steps of models on published walls; linear programs of a search count as steps."""
-    assert answer(BRACKET, NARROW, *cells) == answer(BRACKET, WIDE, *cells)
+    assert answer(BRACKET, NARROW, cell) == answer(BRACKET, WIDE, cell)
 
 
 @x86

@@ -107,7 +107,7 @@ def test_dead_point_and_line_loads_move_with_their_block() -> None:
         assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
 
 
-@pytest.mark.parametrize("to", [[-1.0, 0.9], [0.25, -0.02]])
+@pytest.mark.parametrize("to", [[-1.0, 0.9], *at_length([0.25, -0.02])])
 def test_ties_of_a_rocking_block_pull_along_their_current_direction(to: list[float]) -> None:
     """To an anchor and to the ground: drive by virtual work, exact at any rotation, and the ground reactions.
 

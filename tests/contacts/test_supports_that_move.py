@@ -95,6 +95,7 @@ def voussoirs(spread: float) -> Scene:
     )
 
 
+@pytest.mark.long
 def test_fall_does_not_depend_on_how_far_supports_would_move() -> None:
     """In stages of up to a tenth of the way, the way to .9 m ends in rubble that a ledger cannot account for."""
     intervals = [fall_interval(far(voussoirs(spread))) for spread in (0.6, 0.9)]
@@ -190,8 +191,7 @@ def leaning(width: float, height: float, **joint: Any) -> Scene:
     [
         (dem_dynamic, 0.06, 0.8, 0.12),
         (dem_dynamic, 0.4, 0.1, 0.1),
-        (fem, 0.4, 0.1, 0.1),
-        *at_length((fem, 0.06, 0.8, 0.12)),
+        *at_length((fem, 0.4, 0.1, 0.1), (fem, 0.06, 0.8, 0.12)),
     ],
 )
 def test_block_on_tilting_ground_topples_or_slides_at_the_exact_angle(
@@ -225,7 +225,8 @@ def test_upright_block_alone_topples_on_its_ground_before_it_lands(angle: float)
     assert rest < math.degrees(math.atan(1 / 7)) / 10 < fall < 1.004 * rest
 
 
-@pytest.mark.parametrize("angle", [-6.84, *at_length(-6.7)])
+@pytest.mark.long
+@pytest.mark.parametrize("angle", [-6.84, -6.7])
 def test_block_stands_on_ground_that_tilts_by_less_than_its_slope(angle: float) -> None:
     """Below 6.843°; the last of 20 stages shakes it so that it falls, and a fall counts only in a short one."""
     scene = leaning(0.06, 0.5, friction=0.8)
@@ -235,6 +236,7 @@ def test_block_stands_on_ground_that_tilts_by_less_than_its_slope(angle: float) 
     assert outcome.curve[-1, 0] == pytest.approx(400 * outcome.curve[1, 0])
 
 
+@pytest.mark.long
 def test_block_that_nearly_falls_returns_and_falls_later() -> None:
     """Tilted to 6.8°, back to 2°, and then beyond 6.843°: it tips over slowly, which must not count as a rest."""
     scene = leaning(0.06, 0.5, friction=0.8)
@@ -253,7 +255,7 @@ def test_fall_that_the_budget_leaves_open_is_no_collapse() -> None:
     assert "neither rested nor fell" in outcome.message
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_block_rotates_with_its_ground(model: Any) -> None:
     """Its centroid moves on an arc of 10° about the ground's centre; along a line it would go 0.5 % farther."""
     scene = leaning(0.2, 0.3)
@@ -269,7 +271,7 @@ def test_block_rotates_with_its_ground(model: Any) -> None:
     assert seen[-1][1, :2] == pytest.approx(gone, rel=1e-4)
 
 
-@pytest.mark.parametrize(("model", "order"), [(dem_dynamic, 1), (fem, -1), *at_length((dem_dynamic, -1), (fem, 1))])
+@pytest.mark.parametrize(("model", "order"), [(dem_dynamic, 1), *at_length((dem_dynamic, -1), (fem, 1), (fem, -1))])
 def test_anchors_stay_fixed_while_supports_move(model: Any, order: int) -> None:
     """A block on the moving ground is tied to an anchor 2 m above: the tie stretches by √(4 + d²) − 2 m."""
     by, stiffness = (0.05 * order, 0.0), 1e9 * 1e-6 / 2.0
@@ -290,7 +292,7 @@ def test_anchors_stay_fixed_while_supports_move(model: Any, order: int) -> None:
     assert outcome.path[-1, outcome.path_columns.index("tie 0 [N]")] == pytest.approx(stiffness * stretched, rel=0.02)
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_anchor_stays_fixed_while_all_ground_sinks(model: Any) -> None:
     """The tie above a block stretches by the settlement, and the block does not turn."""
     scene = build_scene(
@@ -347,9 +349,8 @@ def crushed_bearing(strength: float, cap_shear: float) -> tuple[Scene, float]:
     ("model", "strength", "cap_shear"),
     [
         (dem_dynamic, 4e4, 0.0),
-        (dem_dynamic, 8e4, 9.0),
-        (fem, 8e4, 9.0),
-        *at_length((dem_dynamic, 8e4, 0.0), (fem, 4e4, 0.0), (fem, 8e4, 0.0)),
+        *at_length((dem_dynamic, 8e4, 0.0), (dem_dynamic, 8e4, 9.0)),
+        *at_length((fem, 4e4, 0.0), (fem, 8e4, 0.0), (fem, 8e4, 9.0)),
     ],
 )
 def test_bearing_crushes_once_too_little_of_it_is_left(model: Any, strength: float, cap_shear: float) -> None:

@@ -71,7 +71,7 @@ def test_lateral_push_of_block_follows_tan_until_balance_on_corner(model: Any) -
     assert outcome.curve[-1, 1] <= 0
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_point_force_follows_its_material_point(model: Any) -> None:
     """Pushed at the corner farther from the toe, which rises: λ F (its height) = W (arm of the centroid)."""
     at, middle, direction = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
@@ -304,6 +304,7 @@ def test_shorter_push_counts_if_it_agrees_with_the_whole_path(
     assert ("interrupted" in narrowed.message) == bool(message)
 
 
+@pytest.mark.long
 def test_message_reports_peak_before_wall_lands_on_ground() -> None:
     """A slab on a pier tips at W a / c, and carries far more once its corner rests on the ground."""
     at_end = {"kind": "point", "at": [0.6, 0.2], "force": [0.0, -1.0]}
@@ -341,7 +342,7 @@ def test_block_with_crushing_toe_pushed_at_point() -> None:
     assert outcome.multiplier == pytest.approx(exact, rel=0.03)  # the joint points resolve crushing to 3 %
 
 
-@pytest.mark.parametrize("stiffness", [1e10, 1e12])
+@pytest.mark.parametrize("stiffness", [1e10, *at_length(1e12)])
 def test_block_that_turns_on_a_crushing_toe_follows_its_exact_curve(stiffness: float) -> None:
     """A length c = W / (f t) of the toe is crushed, about whose inner end the block turns; W acts in its middle.
 

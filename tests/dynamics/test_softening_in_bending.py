@@ -52,7 +52,7 @@ def strength_on_springs(energy: float, strength: float = STRENGTH, *, leans: flo
     return largest
 
 
-@pytest.mark.parametrize(("model", "off"), [(dem_dynamic, 0.03), (fem, 0.02)])
+@pytest.mark.parametrize(("model", "off"), [(dem_dynamic, 0.03), *at_length((fem, 0.02))])
 @pytest.mark.parametrize("energy", [10.0, *at_length(1.0)])
 def test_mortar_tears_progressively_from_edge(model: Any, off: float, energy: float) -> None:
     """With contact only at both ends it would carry as much as a plastic joint, 1.7 to 2.5 times as much."""
@@ -66,7 +66,7 @@ def test_mortar_tears_progressively_from_edge(model: Any, off: float, energy: fl
     assert plastic > 1.6 * exact
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_custom_damage_law_tears_progressively_from_edge(model: Any) -> None:
     """A law with a damage variable gets points along the joint, also if the scene has no fracture energies, as here."""
 
@@ -81,6 +81,7 @@ def test_custom_damage_law_tears_progressively_from_edge(model: Any) -> None:
     assert 0.97 * exact < outcome.lower <= outcome.upper < 1.03 * exact
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("strength", "distance", "off"), [(STRENGTH, 2e-3, 0.005), (2500.0, 8e-3, 0.01)])
 def test_mortar_tears_progressively_at_finite_displacements(strength: float, distance: float, off: float) -> None:
     """For any mesh: contacts only at the nodes of a mesh with one cell per half block would carry 50 % more.

@@ -48,6 +48,7 @@ def deflection(load: dict[str, Any], cells: int) -> float:
     return -float(found.displacement(motion)[middle, 1])
 
 
+@pytest.mark.long
 def test_lintel_under_line_load_deflects_as_timoshenko_beam() -> None:
     """5 q L⁴ / 384 E I + q L² / 8 κ G A, with an error quadratic in the size of the triangles.
 

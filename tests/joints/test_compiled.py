@@ -107,6 +107,7 @@ def ramp(factor: float) -> Any:
     return loop
 
 
+@pytest.mark.long
 def test_kernels_of_two_processes_are_not_confused_by_a_third(tmp_path: Path) -> None:
     """Numba numbers functions per process: the first functions of one source get the same symbol in both processes."""
     program = """

@@ -302,6 +302,7 @@ def test_only_small_displacement_models_ignore_the_line_of_the_load(name: str) -
     assert ("beam.force_line" in said) == (name == "rigid")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("load", "is_crushed"), [(-2e5, False), (-1.05e7, True)])
 def test_note_on_bending_of_crushed_joints_needs_crushing(load: float, is_crushed: bool) -> None:
     """Corners that met other blocks also have a plastic closure; the note once appeared for uncrushed walls."""

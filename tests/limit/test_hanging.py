@@ -58,8 +58,8 @@ def test_hanging_displacement_weights_ties_by_their_work() -> None:
     ("model", "young"),
     [
         *(("dem-static", young) for young in (2.1e11, 5e10, 1e10, 1e9)),
-        *(("dem-dynamic", young) for young in (5e10, 1e10)),
-        *at_length(("dem-dynamic", 2.1e11), ("fem", 1e10)),
+        ("dem-dynamic", 5e10),
+        *at_length(("dem-dynamic", 2.1e11), ("dem-dynamic", 1e10), ("fem", 1e10)),
     ],
 )
 def test_pier_load_is_independent_of_bar_stiffness(model: str, young: float) -> None:

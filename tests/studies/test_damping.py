@@ -44,6 +44,7 @@ def test_mass_proportional_damping_gives_false_rest_beyond_the_exact_rate(wall: 
     assert edge["allowed"] == 0.02
 
 
+@pytest.mark.long
 def test_heavy_mass_proportional_damping_gives_a_wrong_verdict() -> None:
     assert judged(W1, 1.02, mass_rate=3.0)["verdict"] == "right"
     assert judged(W1, 1.02, mass_rate=100.0)["verdict"] == "wrong"

@@ -54,9 +54,8 @@ def test_block_resistance_follows_the_tangent(rocking: Curves) -> None:
     assert small[turned] == pytest.approx(0.5, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("name", "height"), [("W1", 6 * 0.175), pytest.param("W2", 10 * 0.175, marks=pytest.mark.long)]
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "height"), [("W1", 6 * 0.175), ("W2", 10 * 0.175)])
 def test_wall_loses_resistance_like_one_block_of_its_height(name: str, height: float) -> None:
     """To 15 %, for losses from 2 %."""
     row = measure(name)

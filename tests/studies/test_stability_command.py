@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from runningbond.commands.command_line import command
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.stability import EXPERIMENTS
-from tests.at_length import at_length
 
 THREE = EXPERIMENTS[:3]
 
@@ -142,7 +141,8 @@ main(["stability", "--out", sys.argv[2]])
 """
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, *at_length(signal.SIGTERM, signal.SIGKILL)])
+@pytest.mark.long
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_interrupted_command_resumes(how: signal.Signals, tmp_path: Path) -> None:
     def start(pace: str) -> "subprocess.Popen[str]":
         line = [sys.executable, "-c", STOPPED_IN_THE_SECOND, pace, str(tmp_path / "result")]
