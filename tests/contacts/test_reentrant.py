@@ -182,7 +182,7 @@ def test_corner_contact_opening_equals_its_penetration(
 
 
 @pytest.mark.parametrize(
-    ("model", "slope"), [(dem_dynamic, 30), (fem, 45), *at_length((dem_dynamic, 45), (dem_dynamic, 60))]
+    ("model", "slope"), [(dem_dynamic, 30), *at_length((dem_dynamic, 45), (dem_dynamic, 60), (fem, 45))]
 )
 def test_block_with_its_toe_in_a_notch_topples_as_on_rough_ground(model: Any, slope: float) -> None:
     """λ = tan(α − θ): floor and slope of the notch hold a corner that would slide at λ = 0.1 by friction alone."""

@@ -219,7 +219,7 @@ def test_crushing_toe_shortens_the_lever() -> None:
 
 
 @pytest.mark.parametrize(
-    ("model", "strength"), [("dem-dynamic", None), ("fem", 1e12), *at_length(("dem-dynamic", 1e12), ("fem", None))]
+    ("model", "strength"), [("dem-dynamic", None), *at_length(("dem-dynamic", 1e12), ("fem", None), ("fem", 1e12))]
 )
 def test_frames_of_a_rig_have_its_joint_tractions(model: str, strength: float | None) -> None:
     """The last frame's tractions carry the load on the ground, and the joint opening matches the rotation."""

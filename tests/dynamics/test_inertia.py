@@ -142,7 +142,7 @@ def test_blocks_on_pins_keep_their_masses(pinned: bool) -> None:
         assert (heavier.mass[own.rigid] > own.mass[own.rigid]).any()
 
 
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_message_reports_inertia_factor(model: Any) -> None:
     """Both models have the same joint points on this wall."""
     scene = published_scene("wall-w1")

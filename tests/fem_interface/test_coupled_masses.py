@@ -136,6 +136,7 @@ def test_large_walls_have_no_coupled_masses(monkeypatch: pytest.MonkeyPatch) -> 
     assert with_coupled_masses(found, system) is system
 
 
+@pytest.mark.long
 def test_soft_and_stiff_blocks_have_same_limit_load() -> None:
     """A pier one block wide has the same limit load, to the width of its brackets; the message reports the coupling."""
     pier = panel(wall__length=0.24, wall__height=0.36, joint__mortar=MORTAR)

@@ -264,6 +264,7 @@ def test_added_compliance_is_that_of_springs_in_series(cells: int) -> None:
     assert added_compliance(found) == pytest.approx(1e10 / (stiffness * height), rel=1e-9)
 
 
+@pytest.mark.long
 def test_strong_inner_joints_give_limit_load_of_whole_blocks() -> None:
     """λ of a small wall with stiff and strong joints between its triangles is that of whole blocks."""
     size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}

@@ -10,6 +10,7 @@ from runningbond.joints import joint_stiffness
 from runningbond.joints.dry_points import dry_points, dry_within, is_beyond
 from runningbond.joints.interface import HISTORY, any_points, interface_constants
 from runningbond.scene import Closure, JointMaterial, Stiffness
+from tests.at_length import at_length
 from tests.walls import courses
 
 SANDSTONE = Closure(5650.0, 155e9)
@@ -26,9 +27,7 @@ def dry(**changes: object) -> JointMaterial:
     [
         dry(),
         dry(closure=None),
-        dry(closure=Closure(1e3, 4e9 * np.e**7.9)),
-        dry(compressive_strength=None),
-        dry(peak_closure=1e-4),
+        *at_length(dry(closure=Closure(1e3, 4e9 * np.e**7.9)), dry(compressive_strength=None), dry(peak_closure=1e-4)),
     ],
     ids=["closing", "stiff", "much stiffer", "strong", "hardening"],
 )

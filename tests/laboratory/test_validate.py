@@ -16,6 +16,7 @@ from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
 from runningbond.results import Outcome
 from runningbond.scene import Drive, SceneError
+from tests.at_length import at_length
 from tests.walls import write_toml
 
 from .folders import GRANITE, HEADS, SANDSTONE, write_folder
@@ -352,8 +353,7 @@ def test_cyclic_wall_without_a_record_is_said_to_be_pushed_to_one_side(
     assert (page.count("pushed to one side;"), page.count("pushed to and fro;")) == (1, 1)
 
 
-@pytest.mark.parametrize("first", [1, -1])
-@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("side", "first"), [(1, -1), (-1, 1), *at_length((1, 1), (-1, -1))])
 def test_scene_of_a_cyclic_test_may_push_to_one_side(side: int, first: int, tmp_path: Path) -> None:
     """It was called pushed to and fro, `fem` was refused, and a push to the side of the second half cycle not read."""
     curve = f"displacement_mm,force_kN\n0,0\n{2 * first},{4 * first}\n{-2 * first},{-4 * first}\n0,0\n"

@@ -79,7 +79,7 @@ def test_glued_wall_has_wider_load_interval(freedoms: int, found_in_w2: CoarseSe
     assert proved or freedoms < 60
 
 
-@pytest.mark.parametrize(("name", "needed"), [("wall-w3", 2), ("panel-12", 3)])
+@pytest.mark.parametrize(("name", "needed"), [("wall-w3", 2), *at_length(("panel-12", 3))])
 def test_loads_between_lowest_and_highest_certificate_are_proved(name: str, needed: int) -> None:
     """The search knows some of them from interior points only; those needed for the certified loads are proved."""
     looked = coarse(published_scene(name), starts=1)

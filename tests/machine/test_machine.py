@@ -51,7 +51,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGKILL, *at_length(signal.SIGINT)])
 def test_interrupted_mesh_is_complete_after_a_second_call(how: signal.Signals, home: Path) -> None:
     trial = interrupt(Scratch(MESH, home), home / f"mesh-{how}", how, how.name)
     assert (trial.verdict, trial.kept) == (REDONE, 0)

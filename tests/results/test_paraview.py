@@ -281,8 +281,7 @@ def check_balance(scene: Scene, model: str, tmp_path: Path) -> None:
     ("model", "joint"),
     [
         ("dem-dynamic", {"compressive_strength": 1e8, "inset": 0.003}),
-        ("fem", {}),
-        *at_length(("dem-dynamic", {})),
+        *at_length(("dem-dynamic", {}), ("fem", {})),
     ],
 )
 def test_recorded_forces_balance_a_block_that_slides_onto_another(model: str, joint: dict[str, float]) -> None:

@@ -47,6 +47,7 @@ from runningbond.studies.accuracy.walls import (
 )
 from runningbond.studies.apart import TOO_LONG, measure_apart
 from runningbond.studies.page import draw_charts, write_page
+from tests.at_length import at_length
 
 ROOT = Path(__file__).parents[2]
 
@@ -113,14 +114,8 @@ def test_limit_analysis_finds_the_exact_multipliers(name: str) -> None:
     assert {"block-topples": 0.23 / 0.36, "block-slides": 0.497, "stack-of-5": 0.46}[name] == wall.answer[0]
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "wall-w1-inset",
-        pytest.param("wall-w2-inset", marks=pytest.mark.long),
-        pytest.param("wall-w3-inset", marks=pytest.mark.long),
-    ],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["wall-w1-inset", "wall-w2-inset", "wall-w3-inset"])
 def test_published_multipliers_are_certified_to_their_last_digit(name: str) -> None:
     """With contacts moved inwards, one load is certified, and it rounds to the published value.
 
@@ -155,7 +150,7 @@ def test_sheared_cell_of_rigid_blocks_has_the_closed_form() -> None:
         assert ask("shear", model, wall.scene, settings).value == pytest.approx(wall.answer[0], rel=1e-9)
 
 
-@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+@pytest.mark.parametrize("model", ["dem-dynamic", *at_length("fem")])
 def test_rotated_block_resists_with_the_tangent_only_at_finite_displacements(model: str) -> None:
     wall = accuracy_walls()["turned-block"]
     assert wall.answer is not None

@@ -29,6 +29,7 @@ def rocking() -> Curves:
     return curves(*scene_of("block"), ALONE)
 
 
+@pytest.mark.long
 def test_block_loses_resistance_at_the_exact_displacements(
     rocking: Curves,
 ) -> None:
@@ -44,6 +45,7 @@ def test_block_loses_resistance_at_the_exact_displacements(
         assert displacement_at(moved, 1 - finite / small, d) == pytest.approx(theory, rel=2e-3)
 
 
+@pytest.mark.long
 def test_block_resistance_follows_the_tangent(rocking: Curves) -> None:
     _, moved, small, finite = rocking
     theta = np.arcsin(moved * WIDTH / HEIGHT)
