@@ -275,6 +275,16 @@ def test_history_far_above_certified_loads_without_a_bound_needs_more() -> None:
         assert next_step(found, Step(HISTORY, ""), found.outcomes[-1]).draws == DRAWS
 
 
+def test_self_locking_wall_is_told_as_far_as_it_is_proved() -> None:
+    """A push inside the friction cone: a search that certifies no collapse does not exclude one."""
+    push = {"kind": "point", "at": [0.2, 0.175], "force": [0.2, -1.0]}
+    advice = advise(courses([[1]], load__live=push, joint__friction=0.7))
+    found = advice.outcome()
+    assert (found.status, found.model) == ("unbounded", "limit-nonassociated")
+    assert advice.rungs[-1].next.reason in found.message
+    assert "which does not exclude one" in found.message
+
+
 def test_locking_history_removes_the_upper_end_of_certified_loads() -> None:
     """Collapse from .97 on is certified only for joint forces that the load alone does not produce."""
     found = known(1.0, (0.97, 0.99))

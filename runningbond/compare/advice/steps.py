@@ -82,7 +82,7 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
 
 def _after_certificate(known: Knowledge, outcome: Outcome) -> Step:
     if outcome.status == "unbounded":
-        return Step(None, "it is self-locking even where friction does not dilate")
+        return Step(None, outcome.message)
     if known.narrow:  # rigid blocks suffice: certificates do not include stiffness
         why = "the certified loads lie within the tolerance, but a better search may find lower ones"
         return Step(_cheapest_rigid(known), f"{why}: one history is followed to see")
