@@ -51,7 +51,7 @@ class TieRows(NamedTuple):
 
     def _spans(self, motion: Array) -> Array:
         """Vectors from the first end of each to the second, ``(nt, 2)`` [m]."""
-        first, second = np.split(self.ends.places(motion), 2)
+        first, second = self.ends.places(motion).reshape(2, -1, 2)
         return np.asarray(second - first)
 
     def pulls(self, motion: Array, stretch: Array) -> Array:
