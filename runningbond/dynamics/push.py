@@ -221,9 +221,9 @@ class Push(Lead):
         curve = self.onward(slow.curve)
         if peak := self._early_peak(curve):
             return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
-        if agreed := self._agreed(self.onward(fast.curve), curve, tolerance):
-            most = number(float(curve[: agreed + 1, 1].max()))
-            return f"up to {two_digits(curve[agreed, 0])} m it is {most} at both: a shorter distance answers"
+        agreed, most = self._agreed(self.onward(fast.curve), curve, tolerance)
+        if agreed:
+            return f"up to {two_digits(agreed)} m it is {number(most)} at both: a shorter distance answers"
         return ""
 
     def nearer(self, fast: Traverse, slow: Traverse, tolerance: float) -> float | None:
@@ -231,8 +231,7 @@ class Push(Lead):
         curve = self.onward(slow.curve)
         if peak := self._early_peak(curve):
             return PEAK_MULTIPLE * peak
-        agreed = self._agreed(self.onward(fast.curve), curve, tolerance)
-        return float(curve[agreed, 0]) if agreed else None
+        return self._agreed(self.onward(fast.curve), curve, tolerance)[0] or None
 
     @staticmethod
     def _early_peak(curve: Array) -> float:
@@ -253,17 +252,21 @@ class Push(Lead):
         return f"the wall had passed its largest multiplier, and came to {came} m: take a shorter distance"
 
     @staticmethod
-    def _agreed(fast: Array, slow: Array, tolerance: float) -> int:
-        """Farthest row of a curve ``(n, 2)`` with a largest load that another speed and a longer path hardly change.
+    def _agreed(fast: Array, slow: Array, tolerance: float) -> tuple[float, float]:
+        """Displacement [m] up to which another speed and a longer path hardly change a largest load, and that load.
 
-        Zero if there is none, or if it is at the end of the curve.
+        Zeros if there is none, or if it is the largest displacement of the slow curve; curves are ``(n, 2)``. A control
+        point may go back on its way.
         """
         (other, before), (at, force) = np.maximum.accumulate(fast).T, np.maximum.accumulate(slow).T
         changed = np.abs(np.interp(at, other, before) - force)
         grown = force - np.interp((1 - FINAL_PART) * at, at, force)
         alike = np.maximum(changed, grown) <= tolerance * force
         agreed = int(np.flatnonzero(alike & (force > 0) & (at > EARLY_PEAK * at[-1]))[-1:].sum())
-        return agreed if slow[agreed, 0] <= (1 - EARLY_PEAK) * np.abs(slow[:, 0]).max() else 0
+        came = np.maximum.accumulate(np.abs(slow[:, 0]))
+        if came[agreed] > (1 - EARLY_PEAK) * came[-1]:
+            return 0.0, 0.0
+        return float(came[agreed]), float(force[agreed])
 
     def fall(self, traverse: Traverse) -> str:
         """Note on how a wall has fallen at the end of a traverse."""

@@ -266,6 +266,19 @@ def test_message_asks_for_shorter_distance_if_peak_is_at_start_or_speeds_part(
         assert lead.nearer(fast, slow, 0.01) == pytest.approx(nearer)
 
 
+def test_shorter_path_ends_where_a_control_point_that_goes_back_has_been() -> None:
+    """Both speeds agree until it is behind its place at rest; a push over that distance, −0.03 m, ended at once."""
+    nothing: Any = None
+    lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
+    there_and_back = [[0.0, 0.0], [0.02, 0.4], [0.05, 0.4], [0.02, 0.3], [-0.03, 0.2]]
+    for side in (1, -1):
+        fast, slow = (
+            pushed_along(np.array([*there_and_back, [0.3, late], [1.0, late]]) * (side, 1.0)) for late in (0.8, 0.5)
+        )
+        assert lead.nearer(fast, slow, 0.01) == pytest.approx(0.05)
+        assert lead.remedy(fast, slow, 0.01).startswith("up to 0.05 m it is 0.4000 at both")
+
+
 def test_push_without_a_distance_finds_its_early_peak_on_a_shorter_path() -> None:
     """A glued block tears off within a thousandth of the way on which it topples; each speed shows another peak."""
     size = {"length": 1.0, "height": 2.0, "block_width": 1.0, "block_height": 2.0, "thickness": 0.12}
