@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -315,6 +316,19 @@ def test_shorter_push_counts_if_it_agrees_with_the_whole_path(
     assert (narrowed.status, narrowed.steps) == (status, 12)
     assert narrowed.multiplier == (answer if status == "collapse" else None)
     assert ("interrupted" in narrowed.message) == bool(message)
+
+
+@pytest.mark.parametrize(
+    ("low", "said"), [(0.1, "the multiplier had fallen from 0.4000 at 0.02 m to 0.1000"), (0.39, "")]
+)
+def test_note_on_a_first_peak_needs_a_fall_before_the_largest_multiplier(low: float, said: str) -> None:
+    nothing: Any = None
+    system: Any = SimpleNamespace(live=0.0, measure=lambda load: 1.0)
+    lead = Push(nothing, cast(Run, SimpleNamespace(system=system)), nothing, nothing, nothing, nothing)
+    for side in (1, -1):
+        curve = np.array([[0.0, 0.0], [0.02, 0.4], [0.05, low], [0.1, 0.8], [0.2, 0.5]]) * (side, 1.0)
+        assert lead.before(curve).startswith(said)
+        assert bool(lead.before(curve)) == bool(said)
 
 
 @pytest.mark.long
