@@ -75,7 +75,8 @@ def run(
         deformed wall as far as a driven beam or a moving support goes, or as live loads push it past their peak.
     distance
         Displacement of the control point up to which live loads push the wall [m], only if displacements are finite;
-        by default the smaller side of the wall. The push ends earlier if the loads fall to zero.
+        by default the smaller side of the wall, and then less if that gives no answer. The push ends earlier if the
+        loads fall to zero.
     out
         Folder for the result, its time series for ParaView, its curve with all reactions as a table and as a picture,
         and a picture of its mechanism.

@@ -113,7 +113,8 @@ def collapse_by_steps(
         Time steps after which a load is left undecided.
     distance
         Displacement of the control point [m] to which the live load pushes a wall at finite displacements; by default
-        the smaller side of the wall. The push ends earlier if the multiplier has fallen to zero.
+        the smaller side of the wall, or if that gives no answer, as far as both speeds agree. The push ends earlier if
+        the multiplier has fallen to zero.
     observe
         Called with the run, its state and the multiplier every few hundred steps, e.g. to take snapshots.
 

@@ -9,6 +9,7 @@ at the end of the path. A wall at rest whose support carries nothing any more br
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 
@@ -50,6 +51,28 @@ UNACCOUNTED = 0.01
 """Fraction of the work of the loads that the energy ledger may miss before a run counts as failed."""
 
 
+class _LastPath:
+    """Observer that passes states on to another one, and keeps those of the last traverse to show them again."""
+
+    def __init__(self, observe: Observer) -> None:
+        self._observe = observe
+        self._seen: list[tuple[Run, State, float]] = []
+
+    def __call__(self, run: Run, state: State, multiplier: float) -> None:
+        """Pass a state on."""
+        if run.is_driven:
+            if self._seen and state.steps < self._seen[-1][1].steps:  # the first state of a slower traverse
+                self._seen.clear()
+            self._seen.append((run, state.copy(), multiplier))
+        self._observe(run, state, multiplier)
+
+    def show_again(self) -> None:
+        """Show the last traverse once more to an observer that has seen another path since."""
+        with suppress(KeyboardInterrupt):
+            for seen in self._seen:
+                self._observe(*seen)
+
+
 def collapse_of_led(
     outcome: Outcome,
     scene: Scene,
@@ -76,9 +99,12 @@ def collapse_of_led(
         `upper` enclose the answer by as much as the last halving of the speed has changed it.
     """
     traverses, self_locking, start, pushed = list[Traverse](), cache(is_self_locking), outcome, run
+    is_free = distance is None and not scene.is_led
+    path = _LastPath(observe)
+    watch = path if is_free else observe
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
-        loaded = put_on_dead_load(resting, criteria, observe)
+        loaded = put_on_dead_load(resting, criteria, watch)
         state, verdict = loaded.state, loaded.verdict
         outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":
@@ -88,7 +114,7 @@ def collapse_of_led(
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
         run.is_driven = True
-        lead = _lead(scene, run, state, criteria, observe, points, distance, self_locking)
+        lead = _lead(scene, run, state, criteria, watch, points, distance, self_locking)
         for duration in _durations(lead, loaded.rest):
             traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), lead.moves))
             last = lead.go(traverse, lead.longest / duration)
@@ -117,8 +143,7 @@ def collapse_of_led(
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
-    is_free = distance is None and _is_wide(outcome)
-    nearer = lead.nearer(traverses[-2], traverses[-1], tolerance) if is_free else None
+    nearer = lead.nearer(traverses[-2], traverses[-1], tolerance) if is_free and _is_wide(outcome) else None
     if nearer is not None:
         again = collapse_of_led(
             start,
@@ -133,7 +158,10 @@ def collapse_of_led(
             observe=observe,
             distance=nearer,
         )
-        return _narrowed(outcome, again, nearer)
+        narrowed = _narrowed(outcome, again, nearer)
+        if narrowed.multiplier is None:
+            path.show_again()
+        return narrowed
     if outcome.status == "undecided" and outcome.upper is None and lead.moves and self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
@@ -314,10 +342,14 @@ def _narrowed(outcome: Outcome, again: Outcome, distance: float) -> Outcome:
     if "interrupted" in again.message:
         return replace(outcome, steps=steps, message=joined(outcome.message, "interrupted on a shorter path"))
     (low, high), (least, most) = _bounds(outcome), _bounds(again)
-    if again.multiplier is None or not (least <= high and low <= most):
-        return replace(outcome, steps=steps)
+    pushed = f"pushed to {two_digits(distance)} m"
+    if again.multiplier is None:
+        return replace(outcome, steps=steps, message=joined(outcome.message, f"{pushed} there is no answer either"))
+    if not (least <= high and low <= most):
+        near = f"{pushed} it is between {number(least)} and {number(most)}"
+        return replace(outcome, steps=steps, message=joined(outcome.message, near))
     whole = f"over the whole distance it is between {number(low)} and {number(high)}"
-    return replace(again, steps=steps, message=joined(again.message, f"pushed to {two_digits(distance)} m: {whole}"))
+    return replace(again, steps=steps, message=joined(again.message, f"{pushed}: {whole}"))
 
 
 def _bounds(outcome: Outcome) -> tuple[float, float]:

@@ -223,7 +223,7 @@ class Push(Lead):
             return f"the peak is at {two_digits(peak)} m: a shorter distance shows it"
         agreed, most = self._agreed(self.onward(fast.curve), curve, tolerance)
         if agreed:
-            return f"up to {two_digits(agreed)} m it is {number(most)} at both: a shorter distance answers"
+            return f"up to {two_digits(agreed)} m it is {number(most)} at both: a shorter distance may answer"
         return ""
 
     def nearer(self, fast: Traverse, slow: Traverse, tolerance: float) -> float | None:

@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond import Wall
-from runningbond.dynamics import Run, State, Unstable
+from runningbond.dynamics import Run, State, Unstable, led
 from runningbond.dynamics.contact_update import ContactUpdate
+from runningbond.dynamics.lead import STRIDE
 from runningbond.dynamics.led import _narrowed
 from runningbond.dynamics.push import Push
 from runningbond.dynamics.traverse import Traverse, TraverseRow
@@ -22,6 +23,7 @@ from runningbond.joints import wall_points
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.limit.kinematics import jump_operator
 from runningbond.pictures.curve import draw_curve
+from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 from tests.at_length import at_length
@@ -280,13 +282,17 @@ def test_shorter_path_ends_where_a_control_point_that_goes_back_has_been() -> No
         assert lead.remedy(fast, slow, 0.01).startswith("up to 0.05 m it is 0.4000 at both")
 
 
-def test_push_without_a_distance_finds_its_early_peak_on_a_shorter_path() -> None:
-    """A glued block tears off within a thousandth of the way on which it topples; each speed shows another peak."""
+def torn_block() -> Scene:
+    """A glued block that tears off within a thousandth of the way on which it topples."""
     size = {"length": 1.0, "height": 2.0, "block_width": 1.0, "block_height": 2.0, "thickness": 0.12}
     energies = {"joint__fracture_energy_1": 2.0, "joint__fracture_energy_2": 2.0}
     strength = {"joint__cohesion": 5e4, "joint__tensile_strength": 3e4, **energies}
-    stiff = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 1e10}
-    scene = panel(wall=size, **strength, **stiff)
+    return panel(wall=size, joint__normal_stiffness=1e10, joint__shear_stiffness=1e10, **strength)
+
+
+def test_push_without_a_distance_finds_its_early_peak_on_a_shorter_path() -> None:
+    """Each speed shows another peak."""
+    scene = torn_block()
     free, near = (dem_dynamic(scene, displacements="finite", budget=200_000, distance=d) for d in (None, 0.0012))
     assert free.status == near.status == "collapse"
     assert free.multiplier == pytest.approx(near.multiplier, rel=0.005)
@@ -298,16 +304,17 @@ def test_push_without_a_distance_finds_its_early_peak_on_a_shorter_path() -> Non
 
 
 @pytest.mark.parametrize(
-    ("lower", "upper", "message", "status"),
+    ("lower", "upper", "message", "status", "said"),
     [
-        (0.64, 0.66, "", "collapse"),
-        (0.1, 0.2, "", "undecided"),  # the wall is borne anew farther on, and bears more
-        (0.8, 0.9, "", "undecided"),
-        (0.64, 0.66, "interrupted: the path so far", "undecided"),
+        (0.64, 0.66, "", "collapse", "pushed to 0.18 m: over the whole distance it is between 0.6200 and 0.6800"),
+        # The wall is borne anew farther on, and bears more.
+        (0.1, 0.2, "", "undecided", "no answer; pushed to 0.18 m it is between 0.1000 and 0.2000"),
+        (0.8, 0.9, "", "undecided", "no answer; pushed to 0.18 m it is between 0.8000 and 0.9000"),
+        (0.64, 0.66, "interrupted: the path so far", "undecided", "no answer; interrupted on a shorter path"),
     ],
 )
 def test_shorter_push_counts_if_it_agrees_with_the_whole_path(
-    lower: float, upper: float, message: str, status: str
+    lower: float, upper: float, message: str, status: str, said: str
 ) -> None:
     whole = Outcome("wall", "dem-dynamic", "undecided", lower=0.62, upper=0.68, steps=7, message="no answer")
     answer = (lower + upper) / 2
@@ -315,7 +322,38 @@ def test_shorter_push_counts_if_it_agrees_with_the_whole_path(
     narrowed = _narrowed(whole, near, 0.18)
     assert (narrowed.status, narrowed.steps) == (status, 12)
     assert narrowed.multiplier == (answer if status == "collapse" else None)
-    assert ("interrupted" in narrowed.message) == bool(message)
+    assert narrowed.message == said
+    failed = replace(near, status="failed", multiplier=None)
+    if not message:
+        assert _narrowed(whole, failed, 0.18).message == "no answer; pushed to 0.18 m there is no answer either"
+
+
+@pytest.mark.parametrize("is_stopped", [True, False])
+def test_recorded_states_are_those_of_the_curve_if_a_shorter_push_does_not_count(
+    is_stopped: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A series for ParaView ended after half a millimetre, beside a curve of almost a metre."""
+    recorder, whole, seen = MotionRecorder(scene := torn_block(), None), list[float](), list[float]()
+
+    def nearer(self: Push, fast: Traverse, slow: Traverse, tolerance: float) -> float:
+        whole.extend(slow.curve[:, 1])
+        return 0.001
+
+    def observe(run: Run, state: State, multiplier: float) -> None:
+        recorder(run, state, multiplier)
+        seen.extend([multiplier] if run.is_driven and whole else [])
+        if is_stopped and len(seen) == 5:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Push, "nearer", nearer)
+    monkeypatch.setattr(led, "_bounds", lambda outcome: (np.nan, np.nan))  # brackets that do not overlap
+    outcome = dem_dynamic(scene, displacements="finite", budget=200_000, observe=observe)
+    recorder.finish(outcome)
+    assert outcome.status == "undecided"
+    assert ("interrupted" in outcome.message) == is_stopped
+    assert outcome.curve[:, 1].tolist() == whole
+    told = [frame.multiplier for frame in recorder.frames]  # the curve has medians of three rows
+    assert told == pytest.approx([0.0, *whole[STRIDE - 1 :: STRIDE]], abs=0.005)
 
 
 @pytest.mark.parametrize(
