@@ -405,6 +405,9 @@ def test_block_with_crushing_toe_pushed_at_point() -> None:
     outcome = dem_dynamic(scene, displacements="finite", distance=0.01)
     exact = weight * (WIDTH - weight / (crushing * 0.12)) / 2 / HEIGHT
     assert outcome.multiplier == pytest.approx(exact, rel=0.03)  # the joint points resolve crushing to 3 %
+    assert "crushed joints carry bending at points" in outcome.message
+    strong = scene.with_joint(compressive_strength=1e9)
+    assert "crushed" not in dem_dynamic(strong, 0.1, displacements="finite", distance=0.001).message
 
 
 @pytest.mark.parametrize("stiffness", [1e10, *at_length(1e12)])

@@ -360,7 +360,6 @@ def test_no_block_stands_on_its_corner(peak: float, verdict: str) -> None:
     assert verdict == "collapse" or abs(response.drift[-1]) < 0.05 * balanced
 
 
-@pytest.mark.long
 def test_block_with_decaying_rocking_is_followed_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """A slender block on a bed of springs loses 1 % of its angular velocity per impact: half a minute is too short."""
     slender = HousnerBlock(0.1, 0.8)
