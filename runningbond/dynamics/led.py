@@ -27,7 +27,7 @@ from .collapse import Criteria, crushing_note
 from .dead_load import fall_under_dead_load, put_on_dead_load
 from .lead import Lead
 from .push import Push
-from .run import CALMING, Observer, Run, Unstable
+from .run import CALMING, Observer, Run, Unstable, no_observer
 from .state import State
 from .support_settlement import SupportSettlement
 from .traverse import BEAM, Traverse
@@ -101,7 +101,7 @@ def collapse_of_led(
     traverses, self_locking, start, pushed = list[Traverse](), cache(is_self_locking), outcome, run
     is_free = distance is None and not scene.is_led
     path = _LastPath(observe)
-    watch = path if is_free else observe
+    watch = path if is_free and observe is not no_observer else observe
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
         loaded = put_on_dead_load(resting, criteria, watch)

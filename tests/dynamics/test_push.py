@@ -236,6 +236,7 @@ def test_push_ends_if_wall_falls_while_push_accelerates() -> None:
     assert (outcome.curve[:-1, 1] >= 0).all()
 
 
+@pytest.mark.long
 def test_unreachable_distance_does_not_change_push() -> None:
     """The push must not start so fast that it misses the peak: for 100 m the bracket did not contain tan α."""
     near, far = (dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=d) for d in (None, 100.0))
@@ -500,6 +501,7 @@ def test_low_load_pushes_block_to_balance() -> None:
     assert outcome.curve[-1, 0] == pytest.approx(brink, rel=0.01)
 
 
+@pytest.mark.long
 def test_slower_push_that_goes_farther_continues_to_its_end() -> None:
     """Parts of this wall fall one after the other, and the later the slower it is pushed."""
     size = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2}

@@ -111,6 +111,7 @@ def test_brittle_mortar_carries_load_of_first_crack(model: Any) -> None:
     assert 0.98 * exact < outcome.lower < outcome.upper < 1.125 * exact
 
 
+@pytest.mark.long
 def test_strength_of_dry_crack_converges_with_joint_points() -> None:
     """One half slips along the other as the crack between them opens: each point slips at another load.
 

@@ -15,6 +15,7 @@ from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.scene import Scene, scene_from_dict
 from runningbond.scene.file import read_description
+from tests.at_length import at_length
 from tests.walls import write_toml
 
 WALLS = {wall.name: wall for wall in read_folder(SHIPPED[1])}
@@ -51,7 +52,10 @@ def test_wall_at_fixed_height_transfers_its_push_to_the_ground() -> None:
     assert peaks["exponential"] < peaks["linear"] < 1.2 * peaks["exponential"]
 
 
-@pytest.mark.parametrize("name", [name for name, rung in LADDER.items() if rung.base in ("dem-dynamic", "fem")])
+IN_MOTION = [name for name, rung in LADDER.items() if rung.base in ("dem-dynamic", "fem")]
+
+
+@pytest.mark.parametrize("name", [*(each for each in IN_MOTION if each != "fem-cracking"), *at_length("fem-cracking")])
 def test_models_of_the_ladder_run_under_the_campaigns_observer(name: str) -> None:
     """As `runningbond validate` runs them: under an observer that keeps moments, except for pieces of blocks."""
     answer = Task("squat", squat("exponential", 5e-5), LADDER[name].model, 0.01).run()

@@ -94,6 +94,7 @@ def test_pictures_of_removed_walls_are_deleted(tmp_path: Path) -> None:
     assert {path.name for path in out.glob("wall-*.png")} == {"wall-WS.175.png", "wall-of-mine.png"}
 
 
+@pytest.mark.long
 def test_walls_that_differ_only_in_name_are_computed_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     twin = GRANITE.replace("WS.175", "WS2.175").replace(",61,", ",70,")
     folder, out = write_folder(tmp_path / "walls", GRANITE, twin), tmp_path / "out"

@@ -33,8 +33,8 @@ def column(half: list[tuple[float, float]], friction: float, amplitude: float, p
 @pytest.mark.parametrize(
     ("half", "friction", "amplitude", "span", "verdict"),
     [
-        ([(0.25, 0.25)] * 3, 0.35, 5.0, 0.38, "stands"),
         *at_length(
+            ([(0.25, 0.25)] * 3, 0.35, 5.0, 0.38, "stands"),
             ([(0.25, 0.5)], 0.4, 7.0, 2.0, "stands"),  # slides and rocks at the same time
             ([(0.25, 0.5)] * 2, 0.6, 4.0, 1.5, "stands"),
             ([(0.2, 0.2)] * 4, 0.7, 5.0, 1.5, "collapse"),

@@ -20,6 +20,7 @@ def early(block: dict[tuple[str, int], Row], rule: str) -> list[float]:
     return [1 - block[rule, cells][EARLY] for cells in CELLS]
 
 
+@pytest.mark.long
 def test_block_topples_early_by_the_exact_amount(block: dict[tuple[str, int], Row]) -> None:
     """λ = (b/h) (1 − (1 + x) / n) to 1e-3, with brackets half as wide; two Gauss points: 42, 21 and 11 % early."""
     for row in block.values():
@@ -28,6 +29,7 @@ def test_block_topples_early_by_the_exact_amount(block: dict[tuple[str, int], Ro
     assert early(block, "Gauss 2") == pytest.approx([0.42, 0.21, 0.11], abs=0.006)
 
 
+@pytest.mark.long
 def test_error_of_gauss_points_is_first_order_in_element_length(block: dict[tuple[str, int], Row]) -> None:
     """With two and with three points; no error with points at the ends."""
     for rule in ("Gauss 2", "Gauss 3"):

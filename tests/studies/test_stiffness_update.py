@@ -61,6 +61,7 @@ def test_no_wall_reaches_the_collapse_load_of_the_robust_variant(result: dict[tu
         assert row[BORNE] < 0.8
 
 
+@pytest.mark.long
 def test_finer_steps_do_not_help(result: dict[tuple[str, int], Row]) -> None:
     """In a hundred steps panel-02 gets less far than in ten; panel-04 and W3 fail at once in both."""
     borne = {which: row[BORNE] for which, row in result.items()}
