@@ -11,7 +11,7 @@ at the end of the path. A wall at rest whose support carries nothing any more br
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -98,23 +98,59 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower` and
         `upper` enclose the answer by as much as the last halving of the speed has changed it.
     """
-    traverses, self_locking, start, pushed = list[Traverse](), cache(is_self_locking), outcome, run
     is_free = distance is None and not scene.is_led
     path = _LastPath(observe)
-    watch = path if is_free and observe is not no_observer else observe
+    follow = partial(
+        _followed,
+        outcome,
+        scene,
+        run,
+        tolerance,
+        points=points,
+        point_order=point_order,
+        is_self_locking=cache(is_self_locking),
+        bears=bears,
+        criteria=criteria,
+    )
+    found, nearer = follow(observe=path if is_free and observe is not no_observer else observe, distance=distance)
+    if nearer is None or not is_free:
+        return found
+    again, _ = follow(observe=observe, distance=nearer)
+    narrowed = _narrowed(found, again, nearer)
+    if narrowed.multiplier is None:
+        path.show_again()
+    return narrowed
+
+
+def _followed(
+    outcome: Outcome,
+    scene: Scene,
+    run: Run,
+    tolerance: float,
+    *,
+    points: JointPoints,
+    point_order: Indices,
+    is_self_locking: Callable[[], bool],
+    bears: Callable[[], bool],
+    criteria: Criteria,
+    observe: Observer,
+    distance: float | None,
+) -> tuple[Outcome, float | None]:
+    """The outcome of one path; if it has no answer, a shorter distance [m] that may give one, or None."""
+    traverses = list[Traverse]()
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
-        loaded = put_on_dead_load(resting, criteria, watch)
+        loaded = put_on_dead_load(resting, criteria, observe)
         state, verdict = loaded.state, loaded.verdict
         outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":
             status, message = fall_under_dead_load(run.interface.law, bears)
-            return replace(outcome, status=status, message=message)
+            return replace(outcome, status=status, message=message), None
         if verdict == "undecided":
-            return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+            return replace(outcome, message="the budget ran out before the wall came to rest under its dead load"), None
         run = run.held_late(state)
         run.is_driven = True
-        lead = _lead(scene, run, state, criteria, watch, points, distance, self_locking)
+        lead = _lead(scene, run, state, criteria, observe, points, distance, is_self_locking)
         for duration in _durations(lead, loaded.rest):
             traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), lead.moves))
             last = lead.go(traverse, lead.longest / duration)
@@ -132,40 +168,22 @@ def collapse_of_led(
             traverse = lead.kept(traverses)
             outcome = _path(outcome, scene, run, points, traverse) if traverse.rows else outcome
         if isinstance(stop, Unstable):
-            return replace(outcome, status="failed", steps=stop.steps, message=joined(str(stop), hint))
-        return replace(outcome, message="interrupted: the path so far")
+            return replace(outcome, status="failed", steps=stop.steps, message=joined(str(stop), hint)), None
+        return replace(outcome, message="interrupted: the path so far"), None
     # A support that barely moves does almost no work. The motion under the suddenly applied dead load does not count.
     # If the path returns, works nearly cancel: their ranges are what counts.
     gone = float(np.ptp([row.works for row in traverse.rows], axis=0).sum()) if traverse.rows else 0.0
     lost = run.unaccounted(last, max(gone, lead.least_work), since=state)
     outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, point_order)
     if lost > UNACCOUNTED:
-        return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
+        message = f"{lost:.1%} of the work of the loads is unaccounted for"
+        return replace(outcome, status="failed", message=message), None
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
-    nearer = lead.nearer(traverses[-2], traverses[-1], tolerance) if is_free and _is_wide(outcome) else None
-    if nearer is not None:
-        again = collapse_of_led(
-            start,
-            scene,
-            pushed,
-            tolerance,
-            points=points,
-            point_order=point_order,
-            is_self_locking=self_locking,
-            bears=bears,
-            criteria=criteria,
-            observe=observe,
-            distance=nearer,
-        )
-        narrowed = _narrowed(outcome, again, nearer)
-        if narrowed.multiplier is None:
-            path.show_again()
-        return narrowed
-    if outcome.status == "undecided" and outcome.upper is None and lead.moves and self_locking():
+    if outcome.status == "undecided" and outcome.upper is None and lead.moves and is_self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
-        return replace(outcome, status="unbounded", message=message)
-    return outcome
+        return replace(outcome, status="unbounded", message=message), None
+    return outcome, lead.nearer(traverses[-2], traverses[-1], tolerance) if _is_wide(outcome) else None
 
 
 def _lead(
