@@ -214,6 +214,7 @@ def test_json_output_is_pure_with_stderr_on_a_terminal(small: str) -> None:
     assert json.loads(done.stdout)["status"] == "collapse"
 
 
+@pytest.mark.long
 def test_comparison_is_written_although_its_reader_closes_the_pipe(small: str, tmp_path: Path) -> None:
     """As ``head -1`` does: the tables are printed before the report is written, which was then left out."""
     reading, writing = os.pipe()

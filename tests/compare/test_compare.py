@@ -404,6 +404,7 @@ def test_walls_with_openings_are_compared_by_name(tmp_path: Path, capsys: pytest
     assert "Ferris & Tin-Loi (2001)" in (tmp_path / "table.md").read_text()
 
 
+@pytest.mark.long
 def test_pictures_of_an_earlier_comparison_are_removed(tmp_path: Path) -> None:
     """Other files stay; a comparison of other walls has other plates."""
     line = ["compare", "--models", "dem-static", "--tolerance", "0.05", "--out", str(tmp_path), "--jobs", "1"]

@@ -24,6 +24,7 @@ from runningbond.limit.starts import ROUND, Start
 from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene, scene_from_dict
+from tests.at_length import at_length
 from tests.checker import check
 from tests.limit.test_limit import pile, rectangle
 from tests.random_scenes import mirrored as mirror_image
@@ -62,7 +63,7 @@ def rubble(seed: int, *, mirrored: bool = False, shuffled: int | None = None, si
     return build_scene("rubble", blocks, thickness=0.12, **material)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("seed", "part"), [(1, 0.8), (3, 0.87)])
+@pytest.mark.parametrize(("seed", "part"), [(1, 0.8), *at_length((3, 0.87))])
 def test_more_starts_certify_far_smaller_loads(seed: int, part: float) -> None:
     """The first start finds only the associated load; all starts certify one that is a `part` of it.
 

@@ -67,6 +67,7 @@ def test_interrupted_pictures_are_complete_after_a_second_call(home: Path) -> No
     assert (trial.kept, trial.pieces) == (1, 3)
 
 
+@pytest.mark.long
 def test_full_and_read_only_disks_are_reported_without_loss(home: Path) -> None:
     """On a small disk that becomes full after the first case, and on a read-only one."""
     found = {(trial.command, trial.fault): trial for trial in disk_trials_apart(home, ["mesh", "compare"])}
@@ -272,7 +273,7 @@ main()
     assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
 
 
-@pytest.mark.parametrize("number", [0, 1, 2])
+@pytest.mark.parametrize("number", [1, *at_length(0, 2)])
 def test_closed_stream_receives_no_output(number: int, tmp_path: Path) -> None:
     """Without stdout there was once a traceback; without stderr its lines once went to stdout."""
     where: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "cwd": tmp_path}

@@ -39,6 +39,7 @@ def without(script: str) -> "subprocess.CompletedProcess[str]":
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.long
 def test_runs_and_campaigns_work_without_posix_features(tmp_path: Path) -> None:
     script = f"""
 import runningbond as rb

@@ -10,6 +10,7 @@ from runningbond.compare.advice.experiment import joints_of
 from runningbond.joints import wall_rule
 from runningbond.models import run_model
 from runningbond.scene import Scene
+from tests.at_length import at_length
 from tests.walls import courses
 
 STIFF = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}
@@ -30,7 +31,7 @@ def named() -> Scene:
     return _wall(CRUSHES | {"normal_stiffness": 1e7, "shear_stiffness": 1e5})
 
 
-@pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem"])
+@pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic", *at_length("fem")])
 def test_unused_joint_material_does_not_change_results(model: str, named: Scene) -> None:
     """The unused default once caused nine points per joint, and a limit load 5 % lower or a refusal."""
     known, scene = (each.with_block(young=1e12) for each in (_wall(DRY), named))

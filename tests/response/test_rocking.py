@@ -385,6 +385,7 @@ def test_collapse_counts_if_time_ends_while_it_is_filmed(monkeypatch: pytest.Mon
     assert (filmed.verdict, filmed.message) == (bare.verdict, bare.message)
 
 
+@pytest.mark.long
 def test_response_does_not_depend_on_rows_or_resampling() -> None:
     """A record at 50 Hz and its linear interpolation at 1 kHz, with different numbers of rows.
 

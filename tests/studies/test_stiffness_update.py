@@ -70,6 +70,7 @@ def test_finer_steps_do_not_help(result: dict[tuple[str, int], Row]) -> None:
     assert borne["wall-w3", 100] == borne["wall-w3", 10] < 0.0
 
 
+@pytest.mark.long
 def test_every_tenth_of_the_load_has_a_status(result: dict[tuple[str, int], Row]) -> None:
     """A stepwise run ends once; load steps beyond are never reported as converged."""
     for (_, steps), row in result.items():

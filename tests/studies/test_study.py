@@ -200,6 +200,7 @@ def test_failing_process_reports_its_error() -> None:
         measure_apart(broken, ())
 
 
+@pytest.mark.long
 def test_killed_case_is_measured_again(tmp_path: Path) -> None:
     """The process is killed from outside."""
 
