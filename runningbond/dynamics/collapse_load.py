@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from runningbond.scene import Array, Indices, Scene
 from .collapse import U_CRIT, Criteria, crushing_note
 from .dead_load import fall_under_dead_load
 from .inertia import beam_note
-from .led import UNACCOUNTED, collapse_of_led
+from .led import UNACCOUNTED, LedWall, collapse_of_led
 from .load_stepping import LoadSteps, load_steps, smallest_width
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
@@ -138,19 +139,9 @@ def collapse_by_steps(
         # A second thread of the linear algebra gains nothing on blocks this small, and waits at every step.
         with threadpool_limits(limits=1, user_api="blas"):
             if scene.is_led or run.system.contacts is not None:
-                outcome = collapse_of_led(
-                    outcome,
-                    scene,
-                    run,
-                    tolerance,
-                    points=points,
-                    point_order=point_order,
-                    is_self_locking=is_self_locking,
-                    bears=bears,
-                    criteria=criteria,
-                    observe=observe,
-                    distance=distance,
-                )
+                known = cache(is_self_locking)
+                wall = LedWall(scene, run, tolerance, points, point_order, known, bears, criteria)
+                outcome = collapse_of_led(outcome, wall, observe, distance)
                 return replace(outcome, message=joined(outcome.message, note))
             result, above = LoadSteps(interrupted=True), None
             with suppress(KeyboardInterrupt):

@@ -10,8 +10,7 @@ at the end of the path. A wall at rest whose support carries nothing any more br
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
-from functools import cache, partial
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -73,21 +72,22 @@ class _LastPath:
                 self._observe(*seen)
 
 
-def collapse_of_led(
-    outcome: Outcome,
-    scene: Scene,
-    run: Run,
-    tolerance: float,
-    *,
-    points: JointPoints,
-    point_order: Indices,
-    is_self_locking: Callable[[], bool],
-    bears: Callable[[], bool],
-    criteria: Criteria,
-    observe: Observer,
-    distance: float | None,
-) -> Outcome:
-    """Apply the displacements of a scene to a wall; arguments not described here are as in `collapse_by_steps`.
+@dataclass(frozen=True, eq=False)
+class LedWall:
+    """A wall whose displacements are prescribed; its fields are the arguments of `collapse_by_steps` of their names."""
+
+    scene: Scene
+    run: Run
+    tolerance: float
+    points: JointPoints
+    point_order: Indices
+    is_self_locking: Callable[[], bool]
+    bears: Callable[[], bool]
+    criteria: Criteria
+
+
+def collapse_of_led(outcome: Outcome, wall: LedWall, observe: Observer, distance: float | None) -> Outcome:
+    """Apply the displacements of a scene to a wall; `observe` as in `collapse_by_steps`.
 
     `outcome` is the outcome so far. A wall pushed by its live load moves by `distance` [m], by default its smaller
     side, or if that gives no answer, as far as both speeds agree.
@@ -98,24 +98,13 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole path. `lower` and
         `upper` enclose the answer by as much as the last halving of the speed has changed it.
     """
-    is_free = distance is None and not scene.is_led
+    is_free = distance is None and not wall.scene.is_led
     path = _LastPath(observe)
-    follow = partial(
-        _followed,
-        outcome,
-        scene,
-        run,
-        tolerance,
-        points=points,
-        point_order=point_order,
-        is_self_locking=cache(is_self_locking),
-        bears=bears,
-        criteria=criteria,
-    )
-    found, nearer = follow(observe=path if is_free and observe is not no_observer else observe, distance=distance)
+    watch = path if is_free and observe is not no_observer else observe
+    found, nearer = _followed(outcome, wall, watch, distance)
     if nearer is None or not is_free:
         return found
-    again, _ = follow(observe=observe, distance=nearer)
+    again, _ = _followed(outcome, wall, observe, nearer)
     narrowed = _narrowed(found, again, nearer)
     if narrowed.multiplier is None:
         path.show_again()
@@ -123,34 +112,24 @@ def collapse_of_led(
 
 
 def _followed(
-    outcome: Outcome,
-    scene: Scene,
-    run: Run,
-    tolerance: float,
-    *,
-    points: JointPoints,
-    point_order: Indices,
-    is_self_locking: Callable[[], bool],
-    bears: Callable[[], bool],
-    criteria: Criteria,
-    observe: Observer,
-    distance: float | None,
+    outcome: Outcome, wall: LedWall, observe: Observer, distance: float | None
 ) -> tuple[Outcome, float | None]:
     """The outcome of one path; if it has no answer, a shorter distance [m] that may give one, or None."""
+    scene, run, tolerance, points = wall.scene, wall.run, wall.tolerance, wall.points
     traverses = list[Traverse]()
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
-        loaded = put_on_dead_load(resting, criteria, observe)
+        loaded = put_on_dead_load(resting, wall.criteria, observe)
         state, verdict = loaded.state, loaded.verdict
         outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":
-            status, message = fall_under_dead_load(run.interface.law, bears)
+            status, message = fall_under_dead_load(run.interface.law, wall.bears)
             return replace(outcome, status=status, message=message), None
         if verdict == "undecided":
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load"), None
         run = run.held_late(state)
         run.is_driven = True
-        lead = _lead(scene, run, state, criteria, observe, points, distance, is_self_locking)
+        lead = _lead(wall, run, state, observe, distance)
         for duration in _durations(lead, loaded.rest):
             traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), lead.moves))
             last = lead.go(traverse, lead.longest / duration)
@@ -174,35 +153,27 @@ def _followed(
     # If the path returns, works nearly cancel: their ranges are what counts.
     gone = float(np.ptp([row.works for row in traverse.rows], axis=0).sum()) if traverse.rows else 0.0
     lost = run.unaccounted(last, max(gone, lead.least_work), since=state)
-    outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, point_order)
+    outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, wall.point_order)
     if lost > UNACCOUNTED:
         message = f"{lost:.1%} of the work of the loads is unaccounted for"
         return replace(outcome, status="failed", message=message), None
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
-    if outcome.status == "undecided" and outcome.upper is None and lead.moves and is_self_locking():
+    if outcome.status == "undecided" and outcome.upper is None and lead.moves and wall.is_self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message), None
     return outcome, lead.nearer(traverses[-2], traverses[-1], tolerance) if _is_wide(outcome) else None
 
 
-def _lead(
-    scene: Scene,
-    run: Run,
-    start: State,
-    criteria: Criteria,
-    observe: Observer,
-    points: JointPoints,
-    distance: float | None,
-    is_self_locking: Callable[[], bool],
-) -> Lead:
+def _lead(wall: LedWall, run: Run, start: State, observe: Observer, distance: float | None) -> Lead:
     """How the displacements of a scene are applied; a push goes over a distance [m], a self-locking one not so far."""
+    scene, criteria, points = wall.scene, wall.criteria, wall.points
     if scene.is_led:
         kind = BeamDrive if scene.settlement is None else SupportSettlement
         return kind(scene, run, start, criteria, observe, points)
     low, high = scene.blocks.extent(scene.wall)
     side = float((high - low).min())
-    most = LOCKED / (run.system.measure(run.system.live) or 1.0) if is_self_locking() else np.inf
+    most = LOCKED / (run.system.measure(run.system.live) or 1.0) if wall.is_self_locking() else np.inf
     # Few walls move farther than their smaller side before they fall; those that do are pushed farther the next time.
     reach = min(distance or side, side)
     return Push(scene, run, start, criteria, observe, points, distance or side, most, reach)

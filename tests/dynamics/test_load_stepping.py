@@ -285,7 +285,7 @@ def test_always_undecided_wall_costs_two_budgets() -> None:
 
 
 @given(st.data(), st.sampled_from([0.0005, 0.005, 0.05, 0.5]))
-@settings(max_examples=100)
+@settings(max_examples=300)
 def test_search_ends_for_any_verdicts(data: st.DataObject, tolerance: float) -> None:
     """Each trial load lies inside the current bracket, which never widens."""
     lower, upper = 0.0, float("inf")

@@ -45,7 +45,7 @@ def course_patterns(draw: st.DrawFn) -> list[list[float]]:
     cells=st.sampled_from([1, 2]),
     on=st.sampled_from(["elements", "joints"]),
 )
-@settings(max_examples=12, derandomize=True)
+@settings(max_examples=30, derandomize=True)
 def test_rigid_motions_give_jumps_of_rigid_blocks(
     pattern: list[list[float]], inset: float, cells: int, on: Literal["elements", "joints"]
 ) -> None:

@@ -85,7 +85,7 @@ def fill_the_joints(seed: int, mortar: float, more: float, on_ground: bool) -> N
         assert together.bounds[1] == pytest.approx(0.0, abs=1e-6 * more * mortar)
 
 
-@settings(max_examples=6)
+@settings(max_examples=13)
 @ANY_JOINTS
 def test_expanded_stones_fill_the_joints(seed: int, mortar: float, more: float, on_ground: bool) -> None:
     """They contain the drawn stones, do not overlap, and stay near the outlines from which the joints were removed."""

@@ -69,8 +69,8 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
     if known.evidence == "proof":
         if known.bound == 0.0:
             return _enough(known, "it carries none of the live load")
-        why = "forces in joints follow from balance alone, and nothing slides with friction on a closed joint"
-        why = "no joint has friction" if known.frictionless else why
+        stack = "forces in joints follow from balance alone, and nothing slides with friction on a closed joint"
+        why = "no joint has friction" if known.frictionless else stack
         return _enough(known, f"{why}: dilatancy has no influence")
     model, why = _history(known)
     if known.crushes:
