@@ -229,18 +229,19 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     normal = np.where((side == f)[:, None], normals[f], -normals[e])
     depth = outline.radius[v] + outline.radius[w] - (apart * normal).sum(axis=1)
     along = np.abs(apart[:, 1] * normal[:, 0] - apart[:, 0] * normal[:, 1])
-    # Corners beyond the end of the side that have not penetrated may still do so, except those far below the side.
+    # Corners beyond the end of the side that have not penetrated may still do so, except those far below the side:
+    # until the next search blocks move by a margin against each other, and 2 · overlap − depth grows by √5 margins at
+    # most, where the overlap of blocks that are apart is their distance, negative.
     beside = (opening >= 0) & (along >= outline.straight[side])
-    # Until the next search blocks move by a margin against each other: 2 · overlap − depth grows by √5 margins at most.
     deeper = depth - FASTEST_OPENING * contacts.margin
-    asked = np.flatnonzero(np.where(beside, deeper > 0, depth > CHECKED_DEPTH * outline.margin))
+    asked = np.flatnonzero(depth > CHECKED_DEPTH * outline.margin)
     reach = np.empty(len(asked))
     cosine, sine = placed.blocks[:2, outline.blocks.owner[parts.corner]]
     x, y = parts.normal.T
     turned = np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
     pairs = parts.of_side[np.column_stack([e, f])[asked]]
     overlaps(pairs, parts.first, outline.corners(motion)[parts.corner], turned, reach)
-    least = np.where(opening < 0, depth, np.where(beside, 0.0, deeper.clip(0)))
+    least = np.where(opening < 0, depth, np.where(beside, deeper, deeper.clip(0)))
     found[asked] = reach < least[asked] / 2
     return found
 

@@ -82,6 +82,7 @@ APART = given(
 
 
 @APART
+@example(at=(0.25, 0.4375), turned=(0.0, 0.875), step=(0.0, 0.0, 1.0, 0.0, 0.0, -1.0), margin=0.1875)
 @example(at=(-0.405, -0.092), turned=(2.183, -0.8605), step=(-0.958, 0.232, 0.802, 0.643, -0.466, -0.863), margin=0.149)
 @settings(max_examples=100)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
