@@ -67,7 +67,7 @@ def fem(
     scene: Scene,
     tolerance: float = 0.01,
     *,
-    cells: int = 1,
+    cells: int | None = None,
     modes: ModeCount | None = None,
     rule: Rule | None = None,
     points: PointsOn = "elements",
@@ -89,7 +89,8 @@ def fem(
     scene
         The scene; its joints need a stiffness, and so do its blocks unless `modes` is 3.
     cells
-        Number of cells in half a block along the course, and in a block's height.
+        Number of cells in half a block along the course, and in a block's height: by default 1, or 2 if blocks may
+        crack between all triangles, as no crack passes level through a block that is one cell high.
     modes
         Number of modes of each block (`ModeCount`): by default 10, or all if blocks may crack.
     rule
@@ -122,6 +123,8 @@ def fem(
     words = {"points": points, "cracks": cracks, "loads": loads, "energies": energies}
     for setting, word in words.items():
         one_of(f"model fem: {setting}", word, WORDS[setting])
+    if cells is None:
+        cells = 1 if cracks == "joints" else 2
     finite = are_finite(displacements, "fem", scene, distance) or bool(scene.history)
     if finite:
         _check_finite(rule, words)
@@ -136,7 +139,7 @@ def fem(
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
             run = run_of_longer_steps(wall, system) if mass_scaling else Run(system)
-    note = _note(wall, run.system, cracks)
+    note = _note(wall, run.system, cracks, cells)
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
@@ -198,8 +201,8 @@ def run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
     return Run(with_fictitious_inertia(wall, system), viscous=CALMER)
 
 
-def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
-    """Note for the outcome's message on scaled masses and on the compliance of inner joints."""
+def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks, cells: int) -> str:
+    """Note for the outcome's message on scaled masses, and on the compliance and the paths of cracks inside blocks."""
     deformed = wall.stiffness > 0
     factor = largest_scaling(system.mass[deformed], wall.mass[deformed])
     scaled = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
@@ -209,7 +212,8 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
     softer = ""
     if cracks == "blocks" and (more := added_compliance(wall.pieces)) > REPORTED_COMPLIANCE:
         softer = f"inner joints make blocks up to {more:.0%} softer: a larger inner_joint.normal_stiffness would not"
-    return joined(masses, softer)
+    no_path = "no crack passes level through blocks one cell high: cells = 2 would let it"
+    return joined(masses, softer, no_path if cracks == "blocks" and cells == 1 else "")
 
 
 def fem_response(

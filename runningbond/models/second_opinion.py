@@ -43,7 +43,8 @@ def asks_others(scene: Scene, settings: Mapping[str, Any]) -> bool:
     """
     materials = [scene.block_materials[k] for k in np.unique(scene.material_of_block[scene.wall & ~scene.is_beam])]
     moduli = [each.young for each in materials if each.young is not None]
-    if not moduli or scene.is_led or scene.history or any(settings.get(key, of) != of for key, of in DEFAULTS.items()):
+    chosen = any(settings.get(key, of) not in (of, None) for key, of in DEFAULTS.items())
+    if not moduli or scene.is_led or scene.history or chosen:
         return False
     softest = tuple(replace(each, young=min(moduli)) for each in scene.block_materials)
     return block_compliance(replace(scene, block_materials=softest)) > SOFT_SHARE

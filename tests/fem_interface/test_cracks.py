@@ -20,6 +20,7 @@ from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.toes import Toes
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.joints.softening import DAMAGE
+from runningbond.results import Outcome
 from runningbond.scene import (
     Action,
     Array,
@@ -467,6 +468,25 @@ def test_weaker_inner_joints_reduce_limit_load() -> None:
     assert found[0].multiplier == pytest.approx(0.5, rel=0.01)
     assert found[1].upper is not None
     assert found[1].upper < 0.45
+
+
+def pulled_up(**settings: Any) -> Outcome:
+    """A column of one block without weight, on a stronger bed, of tensile strength 1e5 Pa."""
+    size = {"wall__length": 0.12, "wall__height": 0.24, "wall__block_width": 0.24, "wall__block_height": 0.24}
+    upwards = {"gravity": 0.0, "live": {"kind": "point", "at": [0.06, 0.24], "force": [0, 1]}}
+    inner = {"cohesion": 1e6, "tensile_strength": 1e5}
+    return fem(wall(inner, 1e11, **size, joint__cohesion=1e7, load=upwards), cracks="blocks", **settings)
+
+
+def test_block_in_tension_cracks_across() -> None:
+    """Tensile strength times section; blocks one cell high, once the default, bore five times as much."""
+    outcome = pulled_up()
+    assert outcome.multiplier == pytest.approx(1e5 * 0.12 * float(wall(None).thickness), rel=0.01)
+    assert "one cell high" not in outcome.message
+
+
+def test_blocks_one_cell_high_are_told_to_have_no_level_crack() -> None:
+    assert "one cell high" in pulled_up(cells=1, budget=200).message
 
 
 @pytest.mark.parametrize("energy", [None, 0.0, 5.0])
