@@ -33,6 +33,13 @@ from .interior_point import InteriorPoint, finishing, interior_point
 from .proved import CLOSE, ROUGH, WIDE, is_large, loaded
 from .repair import admissible, balanced
 
+BETWEEN = 0.25, 0.5, 0.75
+"""Shares of the way from the best mechanism so far to that of a program, at which resultants are sought as well.
+
+Mechanisms of early programs are far from the final one: resultants between them spare programs (in-out separation,
+Ben-Ameur & Neto 2007).
+"""
+
 ROUNDS = 60
 """Largest number of programs; after them the bracket keeps the width that it has."""
 
@@ -233,11 +240,11 @@ def _narrowed(
 
     If Ctrl-C ended a program, the one before counts and its point is marked `interrupted`; None if there was none.
     """
-    aim, iterations, width = target_width(system), 0, 1.0
+    aim, iterations, nearest, best = target_width(system), 0, 1.0, list[Array]()
     program, point = InnerProgram(system, joints, known), None
     for _ in range(ROUNDS):
         following = InnerProgram(system, joints, known)
-        accuracy = min(max(width, aim) / 1e3, ROUGH)
+        accuracy = min(max(nearest, aim) / 1e3, ROUGH)
         try:
             program, point = following, interior_point(following.arguments(), accuracy)
         except KeyboardInterrupt:
@@ -246,9 +253,12 @@ def _narrowed(
         if point.status != "optimal":
             break
         found = program.solution("optimal", point.forces, point.motion, iterations)
-        known = known.nearer(joints, system.crushed_jumps(found.motion))
-        width = _width(system, found)
-        if width <= aim / 2 and accuracy <= aim / 1e3:
+        motions = [found.motion, *(each + share * (found.motion - each) for each in best for share in BETWEEN)]
+        for motion in motions:
+            known = known.nearer(joints, system.crushed_jumps(motion))
+        best = [min(best + motions, key=system.kinematic_multiplier)]
+        nearest = _width(system, replace(found, motion=best[0]))
+        if _width(system, found) <= aim / 2 and accuracy <= aim / 1e3:
             break
     return program, point, iterations
 
