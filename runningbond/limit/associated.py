@@ -338,8 +338,9 @@ def judge(state: LimitState) -> tuple[Status, str]:
         return "undecided", INTERRUPTED
     if state.self_locking or _balances_any_multiple(system):
         if system.has_support:
-            return "unbounded", JAMMED
-        return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
+            return "unbounded", f"{JAMMED}, with associated joints; true friction may give way"
+        message = "self-locking: admissible forces balance any multiple of the live load"
+        return "unbounded", f"{message}, with associated joints; true friction may collapse"
     if program == "infeasible":  # at λ = 0 it has the same forces as the program of the dead load
         return "undecided", "the wall is on the brink of falling under its dead load, within rounding"
     return "failed", f"the linear program was not solved: {program}"

@@ -134,7 +134,9 @@ class _Log:
         self.rows.append(_Row(now, ground, places, drift, pushed - self._dead, energy, len(self.first)))
 
     def _keep_shape(self, shape: Array) -> None:
-        """Keep a shape ``(nb, 3)`` as the wall's way to fall unless it has moved too far."""
+        """Keep a shape ``(nb, 3)`` as the wall's way to fall unless it has moved too far, or blocks have fallen."""
+        if self.first:
+            return  # debris swings back as well
         farthest = float(np.hypot(*carried(self._blocks, self._blocks.owner, self._blocks.vertices, shape).T).max())
         if farthest < max(self._lowest, self._highest - self._far / 2):  # it swings back
             self._lowest = self._highest = farthest

@@ -52,8 +52,8 @@ class Response:
         Blocks that had fallen by the end, in the order of falling.
     motion, shape : (nb, 3) float
         Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
-        the last moment at which no corner had moved farther than a tenth of the wall's size, or than that beyond where
-        the wall last swung back.
+        the last moment before a block fell at which no corner had moved farther than a tenth of the wall's size, or
+        than that beyond where the wall last swung back.
     unaccounted
         Largest share of the energy supplied that the ledger misses, until a block has fallen; relative to the kinetic
         energy that a wall at rest may have if that is larger.

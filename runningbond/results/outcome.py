@@ -22,8 +22,9 @@ class Outcome:
         Title of the scene and name of the model.
     status
         ``collapse``: a load was found at which the wall collapses; ``unbounded``: the wall is self-locking, no
-        multiple of the live load brings it down; ``infeasible``: it collapses under its dead load; ``undecided``:
-        the budget ran out or nothing was proved; ``failed``: the numbers cannot be trusted.
+        multiple of the live load brings it down (by `limit`, if its joints are associated); ``infeasible``: it
+        collapses under its dead load; ``undecided``: the budget ran out or nothing was proved; ``failed``: the numbers
+        cannot be trusted.
     multiplier
         λ at collapse; for a point load of 1 N, the load in newtons. None unless the status is ``collapse``.
     lower, upper

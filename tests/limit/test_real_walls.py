@@ -197,6 +197,13 @@ def test_beam_at_fixed_height_locks_wall() -> None:
         assert "whatever vertical force" in outcome.message
 
 
+def test_wall_that_locks_by_dilatancy_may_collapse_with_true_friction() -> None:
+    """Joints that open as they slide lock under a beam at its height; true ones let it slide on the wall."""
+    scene = under_beam("fixed-height", 0.2)
+    assert "with associated joints; true friction may collapse" in run_model("limit", scene).message
+    assert run_model("limit-nonassociated", scene).status == "collapse"
+
+
 @BOTH
 def test_beam_lifted_by_its_dead_load_is_infeasible(model: str) -> None:
     """The beam is held at its height only once its dead load is on: until then nothing keeps it down."""

@@ -20,6 +20,7 @@ from runningbond.scene import ANCHOR, Array, History, PointLoad, Scene, Ties
 from runningbond.scene.history import pulse
 from tests.at_length import at_length
 
+from ..walls import panel
 from .housner import GRAVITY, HousnerBlock
 from .spring_bed import peak
 from .walls import block, resting, shaken, still
@@ -383,6 +384,19 @@ def test_collapse_counts_if_time_ends_while_it_is_filmed(monkeypatch: pytest.Mon
     filmed = follow(rest, 1.0, rows=50, after=0.5)
     assert filmed.time[-1] > bare.time[-1] + 0.4
     assert (filmed.verdict, filmed.message) == (bare.verdict, bare.message)
+
+
+def test_shape_of_the_fall_is_not_that_of_debris() -> None:
+    """The upper course of a pier falls; if it is followed until its halves swing back on the ground, the shape is that
+    of the fall nevertheless."""
+    motion = {"pulse": {"kind": "sine", "amplitude": 0.6, "period": 0.8}, "quantity": "g"}
+    pier = {"block_width": 0.5, "block_height": 1.0, "thickness": 0.3, "length": 0.5, "height": 2.0}
+    joint = {"friction": 0.7, "normal_stiffness": 1e8, "shear_stiffness": 4e7}
+    rest = resting(panel(wall=pier, joint=joint, load__live=None, load__history=motion))
+    bare, filmed = (follow(rest, 1.0, rows=50, after=after) for after in (0.0, 0.5))
+    assert filmed.message == bare.message
+    assert np.abs(filmed.motion - bare.motion).max() > 0.5  # debris has moved on
+    assert filmed.shape == pytest.approx(bare.shape, abs=1e-12)
 
 
 @pytest.mark.long
