@@ -30,7 +30,7 @@ def test_example_walls_print_what_their_page_shows(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Limit analysis to 1e-5, `limit` with its message; other models to 1 %, because friction depends on the path."""
+    """Limit analysis to 1e-5; other models to 1 %, because friction depends on the path. Messages word for word."""
     monkeypatch.chdir(FOLDER.parents[1])
     assert command([*line.split(), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -38,8 +38,7 @@ def test_example_walls_print_what_their_page_shows(
     status, *numbers = re.split(r"[:,] \S+ ", answer.replace("\u00a0", " "))
     assert printed["status"] == status
     written = [float(number) for number in numbers]
-    if model == "limit":
-        assert printed["message"] == message
+    assert printed["message"] == message
     slack = 1e-5 if model.startswith("limit") else 0.01
     assert [printed[key] for key in ("multiplier", "lower", "upper")] == pytest.approx(written, rel=slack)
 
