@@ -256,6 +256,14 @@ def test_agreeing_history_keeps_or_widens_certified_loads(history: tuple[float, 
     assert step.model is None or step.finite
 
 
+def test_history_above_a_bound_that_rounding_puts_below_certified_loads_agrees_with_them() -> None:
+    """A wall that slides at .6: the history that falls above it says nothing of lower loads."""
+    least, most = np.nextafter(0.6, [0.0, 1.0]).tolist()
+    found = known(least, (most, most), (0.583, 0.609))
+    assert (found.evidence, bracket_of(found)) == ("certificate", (most, most))
+    assert found.lowest == least
+
+
 def test_history_slightly_above_certified_loads_widens_them() -> None:
     found = known(1.0, (0.97, 0.99))
     found.bound = None

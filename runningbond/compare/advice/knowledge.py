@@ -119,7 +119,7 @@ class Knowledge:
         """Add the bracket of histories with lowest collapse load `fall`; certified loads that agree with it stay."""
         assert outcome.lower is not None
         assert outcome.upper is not None
-        history = outcome
+        history, reached = outcome, fall
         if self.bound is not None and outcome.multiplier is not None:  # higher loads are an error of the history
             upper = max(outcome.lower, min(outcome.upper, self.bound))
             history = replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
@@ -127,7 +127,8 @@ class Knowledge:
         if self._is_above(outcome):
             self.contradicted = self.narrow
         elif self.narrow and self.answer is not None and self.answer.lower is not None:
-            lower = self.answer.lower if fall >= self.answer.lower else outcome.lower
+            # The bound may lie below certified loads by rounding, and a fall that is cut to it with it.
+            lower = self.answer.lower if reached >= self.answer.lower else outcome.lower
             upper = max(self.answer.upper or 0.0, history.upper or 0.0)
             wider = replace(self.answer, lower=min(lower, self.answer.lower), upper=upper)
             self.contradicted = not _within(wider, self.tolerance)
