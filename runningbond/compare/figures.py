@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from homog import crack_slope, lateral_multiplier
 from runningbond.models import Model
@@ -164,10 +165,10 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
                 if outcome is not None and outcome.multiplier is not None:
                     axes.axhline(outcome.multiplier, color=colour, lw=0.8, ls=model.line)
         axes.set_xscale("log")
-        axes.xaxis.set_major_formatter("{x:g}")
         if not panels:
             axes.set(xlim=shown, ylim=(0, None))
             bare(axes)
+        _label_decades(axes)
     walls = [f"b/a = {label}" for label, _ in TEXTURES]
     if source == FERRIS:
         walls = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
@@ -193,11 +194,19 @@ def wall_curves(comparison: Comparison, name: str) -> Figure | None:
     for model, curve in curves.items():
         axes.plot(1e3 * curve[:, 0], curve[:, 1], ls=model.line, color=model.colour, lw=1.4, label=model.name)
         axes.plot(1e3 * curve[-1:, 0], curve[-1:, 1], model.marker, color=model.colour, ms=4)
-    axes.xaxis.set_major_formatter("{x:g}")
+    _label_decades(axes)
     axes.set(ylim=(0, None), ylabel="load [N]" if force else "load multiplier λ")
     axes.legend(frameon=False, fontsize=8)
     bare(axes)
     return figure
+
+
+def _label_decades(axes: Axes) -> None:
+    """Label the decades of a logarithmic x-axis; if it has one of them or none, also their doubles and halves."""
+    low, high = np.log10(axes.get_xlim())
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0,) if np.floor(high) > np.ceil(low) else (1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:

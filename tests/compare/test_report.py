@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ET
 import zlib
 from dataclasses import replace
 from html.parser import HTMLParser
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -247,6 +248,23 @@ def test_load_curves_show_the_elastic_range(comparison: Comparison) -> None:
     elastic = moved < 0.999e-3
     assert load[elastic] == pytest.approx(600 * moved[elastic], rel=1e-9)
     assert elastic.sum() > 10
+
+
+@pytest.mark.parametrize("reach", [0.55e-5, 2e-5, 1e-4, 1e-2])
+def test_load_curves_have_labels_beside_each_other(comparison: Comparison, reach: float) -> None:
+    """Of one sort, also where displacements differ by less than ten times."""
+    curve = np.array([[0, 0], [reach / 3, 0.5], [reach, 0.6]])
+    outcomes = {("panel-01", "fem"): Outcome("", "fem", "collapse", 0.6, curve=curve)}
+    figure = wall_curves(replace(comparison, campaign=Campaign(outcomes)), "panel-01")
+    assert figure is not None
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    (low, high), ticks = axes.get_xlim(), [*axes.get_xticklabels(), *axes.get_xticklabels(minor=True)]
+    shown = [tick for tick in ticks if tick.get_text() and low <= tick.get_position()[0] <= high]
+    boxes = sorted((box.x0, box.x1) for box in (tick.get_window_extent() for tick in shown))
+    assert len(boxes) >= 2
+    assert all(end < start for (_, end), (start, _) in pairwise(boxes))
+    assert all(float(tick.get_text()) == pytest.approx(tick.get_position()[0]) for tick in shown)
 
 
 def test_the_tables_have_the_sixteen_published_panels(page: Path, comparison: Comparison) -> None:
