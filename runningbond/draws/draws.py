@@ -87,7 +87,7 @@ class Draws:
 
     @property
     def half_width(self) -> float | None:
-        """Half the widest bracket of the draws that collapse: largest error of each λ, and so of their mean."""
+        """Half the widest bracket of the draws that collapse: error of each λ, or twice that if λ is its lower end."""
         brackets = [(each.lower, each.upper) for each in self.drawn if each.multiplier is not None]
         halves = [(upper - lower) / 2 for lower, upper in brackets if lower is not None and upper is not None]
         return max(halves, default=None)
@@ -144,7 +144,7 @@ class Draws:
         told += f": lowest {_told(self.lowest)}, quantiles {quantiles}"
         if self.mean is not None:
             told += f", mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
-        return f"{told}; λ of each is known to ± {_told(self.half_width)}" if self.half_width else told
+        return f"{told}; each λ has a bracket up to {_told(2 * self.half_width)} wide" if self.half_width else told
 
     def __repr__(self) -> str:
         first, ends = self.outcomes[0], {"lowest": self.lowest, "mean": self.mean}

@@ -303,10 +303,11 @@ def test_statistics_include_only_draws_that_collapse() -> None:
 
 
 def test_half_width_of_the_bracket_is_reported_beside_the_standard_error() -> None:
-    """If bisection ends in the same bracket for all draws the mean has no scatter but still the error of each draw."""
+    """If bisection ends in the same bracket for all draws the mean has no scatter but still the error of each draw,
+    which is the width of the bracket if λ is its lower end."""
     same = Draws((Outcome("wall", "fem", "collapse", 0.601, 0.599, 0.603),) * 5 + (outcome(None),), Scatter())
     assert (same.error, same.half_width) == pytest.approx((0.0, 0.002))
-    assert str(same).endswith("mean 0.6010 ± 0.0000 (standard error); λ of each is known to ± 0.002")
+    assert str(same).endswith("mean 0.6010 ± 0.0000 (standard error); each λ has a bracket up to 0.004 wide")
     assert same.summary()["half_width"] == same.half_width
 
 
