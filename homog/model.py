@@ -108,7 +108,8 @@ def homog(scene: Scene) -> Outcome:
         off = f"by a share of their limit load that is only known for {within}"
     else:
         least, most = (100 * end for end in known)
-        off = f"by {least:.3g} to {most:+.3g} % of their limit load on such panels of tan φ 0.3 to 1"
+        off = f"by {least:.3g} to {most:+.3g} % of their limit load on measured panels of this kind, tan φ 0.3 to 1"
+        off += "; others may be off by some percent more"
     return Outcome(
         scene.title,
         "homog",
