@@ -26,7 +26,7 @@ from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, Stiffne
 
 from .study import Row
 
-INSET = 0.02  # distance of contacts from the joint ends [m]; makes λ of W1 to W3 unique
+INSET = 0.02  # distance of contacts from the joint ends [m]; makes λ of W1 and W2 unique
 RAMP = 4  # length of a ramp to a load, relative to the time the wall took to rest under its weight
 SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the sliding block, and b/h of the toppling one
 BRICK = BlockMaterial(1800.0)

@@ -20,7 +20,7 @@ from tests.at_length import at_length
 from tests.walls import panel
 
 ROUNDED = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
-"""Ferris & Tin-Loi's walls with contacts 20 mm inside, recomputed for this project: one load, not an interval."""
+"""Ferris & Tin-Loi's walls with contacts 20 mm inside: lowest certified loads, for W1 and W2 the only ones."""
 
 
 def rounded(name: str) -> Scene:

@@ -307,7 +307,7 @@ def test_mechanism_of_a_toppling_block_turns_about_its_corner() -> None:
 
 @pytest.mark.parametrize(("name", "published"), [("W1", 0.5856), ("W2", 0.5244), ("W3", 0.3374)])
 def test_walls_with_inset_contacts_have_published_limit_load(name: str, published: float) -> None:
-    """Contacts inset by 20 mm, for which the non-associated load is unique: within 1 %, also at the curve's end."""
+    """Contacts inset by 20 mm: the lowest certified load, for W1 and W2 the only one, within 1 %, also at the end."""
     outcome = dem_static(ferris(name, 0.02))
     lower, upper = bracket(outcome)
     assert lower == pytest.approx(published, rel=0.01)

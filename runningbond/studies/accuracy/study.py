@@ -24,7 +24,8 @@ ASKED |= {"physical second": ("fem",)}
 HOW = (  # text of the page: how the study is made
     "Walls with an exact answer are a block that topples, a block that slides and a stack, λ = min(tan φ, b / (n h)); "
     "a block that is rotated by θ, λ = tan(α − θ); and periodic cells. The contacts of W1 – W3 of Ferris & Tin-Loi lie "
-    f"{1e3 * INSET:g} mm in from the ends of the joints, with which λ is unique; their λ is published to four digits. "
+    f"{1e3 * INSET:g} mm in from the ends of the joints; their λ is published to four digits. It is the only load that "
+    "`limit-nonassociated` certifies for W1 and W2, and the smaller of two for W3. "
     "For the panels the answer is the interval of loads that `limit-nonassociated` certifies: the error is the "
     "distance from this interval, and zero inside it, where no load can be called wrong; loads below it are not "
     "excluded. A model is not judged by its own certificates.",
