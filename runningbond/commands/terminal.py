@@ -18,8 +18,8 @@ from rich.table import Table
 from rich.text import Text
 
 from runningbond.campaigns import INTERRUPTIONS, Interrupted
-from runningbond.compare.advice.costs import estimate
 from runningbond.models import Model
+from runningbond.models.costs import estimate
 from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.sheet import Sheet
 from runningbond.scene import Scene, SceneError

@@ -19,7 +19,7 @@ collapse is proved possible, `history` the collapse load of a wall whose load pa
 
 @dataclass(frozen=True)
 class Cost:
-    """Law of a model's run time; see `runningbond.compare.advice.costs` for its use."""
+    """Law of a model's run time; see `runningbond.models.costs` for its use."""
 
     at_100: float  # seconds for 100 blocks
     growth: float  # exponent of the number of blocks
@@ -27,7 +27,8 @@ class Cost:
     weightless: float = 1.0  # factor for walls without weight
     finer: float = 0.0  # exponent of 1 / tolerance; 0 for a model without bisection
     start: float = 0.0  # seconds for a wall of any size, for example to load compiled kernels
-    softened: float = 1.0  # factor for walls whose joints soften,
+    cracked: float = 1.0  # factor for walls whose blocks may crack between all of their triangles,
+    softened: float = 1.0  # for walls whose joints soften,
     crushed: float = 1.0  # for walls whose joints crush or close under pressure,
     soft: float = 1.0  # and for walls of soft blocks, for which further models run (`second_opinion`)
 

@@ -129,7 +129,16 @@ _EVERY_MODEL = (
     Model(
         *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements", "distance"),
-        cost=Cost(3.2, 1.08, 1.43, weightless=1.4, finer=0.16, start=KERNELS, softened=2.2, crushed=4.3, soft=2.1),
+        cost=Cost(
+            *(3.2, 1.08, 1.43),
+            weightless=1.4,
+            finer=0.16,
+            start=KERNELS,
+            cracked=21.0,
+            softened=2.2,
+            crushed=4.3,
+            soft=2.1,
+        ),
         respond=partial(_late, "fem_interface.model", "fem_response"),
         **_IN_MOTION,
         colour="#7e2a55",

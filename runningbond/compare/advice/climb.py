@@ -12,11 +12,11 @@ import numpy as np
 
 from runningbond.draws import Scatter
 from runningbond.models import check_tolerance, run_model
+from runningbond.models.costs import Estimate, short_search, tolerance_of_draws
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
 from ..table import bracket
-from .costs import Estimate, short_search, tolerance_of_draws
 from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step

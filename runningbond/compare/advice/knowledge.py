@@ -10,11 +10,10 @@ from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement
 from runningbond.limit.kinematics import is_determinate, sliding_dilates
 from runningbond.models import MODELS, Kind, Model
+from runningbond.models.costs import Estimate, cracks_anywhere, estimate, pace
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError
-
-from .costs import Estimate, estimate, pace
 
 Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  # evidence for a bracket; empty if none
 
@@ -62,11 +61,8 @@ class Knowledge:
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
-        may_crack, scene = self.scene.inner_joint is not None, self.scene
-        moduli = [scene.block_materials[k].young for k in np.unique(scene.material_of_block[~scene.fixed])]
-        # Blocks may crack anywhere, or only along their axes: triangles need a modulus, and cannot hold ties.
-        self.cracks = may_crack and not len(scene.ties) and None not in moduli
-        self.halves = may_crack and not self.cracks
+        self.cracks = cracks_anywhere(self.scene)
+        self.halves = self.scene.inner_joint is not None and not self.cracks  # blocks crack only along their axes
         materials = self.scene.materials_of_joints
         self.frictionless = not any(each.friction for each in materials)
         self.softens = any(each.softens for each in materials)

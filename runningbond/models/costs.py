@@ -12,11 +12,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, hypot, log
 
-from runningbond.models import MODELS, Cost, Model
-from runningbond.models.second_opinion import asks_others
+import numpy as np
+
 from runningbond.results import Outcome
 from runningbond.results.outcome import two_digits
 from runningbond.scene import Scene
+
+from .model import Cost, Model
+from .registry import MODELS
+from .second_opinion import asks_others
 
 FITTED_TOLERANCE = 0.01  # tolerance of the comparison to which the laws were fitted
 
@@ -59,6 +63,12 @@ def short_search(scene: Scene) -> int:
     return 20 + POINT_PROGRAMS // (2 * max(1, len(scene.joints)))
 
 
+def cracks_anywhere(scene: Scene) -> bool:
+    """Whether `advise` lets blocks crack between all of their triangles: these need a modulus, and cannot hold ties."""
+    moduli = [scene.block_materials[k].young for k in np.unique(scene.material_of_block[~scene.fixed])]
+    return scene.inner_joint is not None and not len(scene.ties) and None not in moduli
+
+
 def tolerance_of_draws(tolerance: float, draws: int) -> float:
     """Tolerance of each draw: with several draws half, so that draws that agree lie within the tolerance together."""
     return tolerance / min(draws, 2)
@@ -79,6 +89,8 @@ def estimate(
     seconds *= (FITTED_TOLERANCE / tolerance_of_draws(tolerance, draws)) ** law.finer
     if not any(scene.load.gravity):
         seconds *= law.weightless
+    if advised and "cracks" in model.parameters and cracks_anywhere(scene):
+        seconds *= law.cracked
     seconds = _dearer(model, law, scene) * (draws * seconds + law.start)
     return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
 
