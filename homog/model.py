@@ -29,7 +29,7 @@ OFF = {
     True: ((-0.823, -0.038), (-0.726, 0.054), (-0.547, 0.280), (-0.267, 0.315)),
 }
 """Smallest and largest relative deviation from the limit load of the block model, a pair for each `FINENESS`: for
-blocks no taller than wide (False), and for taller ones (True). Measured on about 2700 panels of up to 1500 blocks,
+blocks no taller than wide (False), and for taller ones (True). Measured on 2816 panels of up to 1500 blocks,
 tan φ 0.3 to 1 (benchmarks/studies/homogenised.py)."""
 
 TEXTURES, MOST_SLENDER = (0.25, 6.0), 12.0
