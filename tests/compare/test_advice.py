@@ -264,6 +264,14 @@ def test_history_above_a_bound_that_rounding_puts_below_certified_loads_agrees_w
     assert found.lowest == least
 
 
+def test_history_without_an_answer_says_why_next_to_certified_loads() -> None:
+    """Walls that fell under their dead load in the history were only called undecided."""
+    found = known(1.0, (0.97, 0.99))
+    fell = Outcome("", HISTORY.name, "undecided", message="no equilibrium was found under the dead load")
+    found.learn(HISTORY, fell)
+    assert "no equilibrium was found under the dead load" in next_step(found, Step(HISTORY, ""), fell).reason
+
+
 def test_history_slightly_above_certified_loads_widens_them() -> None:
     found = known(1.0, (0.97, 0.99))
     found.bound = None
@@ -550,6 +558,28 @@ def test_blocks_that_may_crack_need_fem() -> None:
     assert "crack" in advice.rungs[1].next.reason
 
 
+def test_finite_displacements_do_not_raise_the_load_of_blocks_that_crack_across() -> None:
+    """At finite displacements blocks crack only on their axes: a pulled block was given many times its strength."""
+    energies = {"fracture_energy_1": 10.0, "fracture_energy_2": 100.0}
+    glue = {"cohesion": 4e6, "tensile_strength": 2e6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    inner = {"cohesion": 2e5, "tensile_strength": 1e5, "normal_stiffness": 1e12, "shear_stiffness": 4e11}
+    materials: dict[str, Any] = {
+        "joint": {"friction": 0.6} | glue | energies,
+        "inner_joint": {"friction": 0.6} | inner | energies,
+    }
+    pull = {"gravity": 9.81, "live": {"kind": "point", "at": [0.2, 0.35], "force": [0.0, 1.0]}}
+    advice = advise(courses([[1]], height=0.35, block__young=2e10, load=pull, **materials), 0.2, finite=True)
+    found = advice.outcome()
+    assert found.model == "fem"
+    assert found.upper is not None
+    strength = 1e5 * 0.4 * float(advice.known.scene.thickness)
+    assert found.upper < 1.1 * strength
+    assert advice.rungs[-1].outcome is not None
+    assert advice.rungs[-1].outcome.status == "undecided"
+    assert "blocks crack only between their triangles, and on a finer mesh perhaps earlier" in found.message
+    assert "at small displacements; dem-dynamic, finite: undecided: it bears more" in found.message
+
+
 def test_blocks_without_a_modulus_crack_only_along_their_axes() -> None:
     """`fem` refuses blocks without Young's modulus, and advice ended "undecided; no other model answers"."""
     inner = {"friction": 0.6, "cohesion": 1e5, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
@@ -648,15 +678,16 @@ def test_leaning_stack_is_followed_at_finite_displacements() -> None:
     assert 0.9 * advice.known.bound < found.upper < advice.known.bound
 
 
+@pytest.mark.parametrize("outcome", [None, Outcome("", HISTORY.name, "undecided")])
 @pytest.mark.parametrize(("leans_by", "said"), [(0.01, False), (0.5, True)])
-def test_message_says_if_displacements_are_not_small(leans_by: float, said: bool) -> None:
-    """The last rung, at finite displacements, refused the scene; before, the wall moved by `leans_by` block sizes."""
+def test_message_says_if_displacements_are_not_small(leans_by: float, said: bool, outcome: Outcome | None) -> None:
+    """The last rung, at finite displacements, refused the scene or found nothing; the wall had moved by `leans_by`."""
     found = known(0.41, (0.35, 0.40))
     size = found.scene.block_size
     curve = np.array([[0.0, 0.0], [leans_by * size, 0.36]])
     history = Outcome("", HISTORY.name, "collapse", 0.36, 0.36, 0.37, curve=curve)
     found.learn(HISTORY, history, draws=[history])
-    refused = AdviceRung(f"{HISTORY.name}, finite", None, Step(None, "refused"), None, 0.0)
+    refused = AdviceRung(f"{HISTORY.name}, finite", outcome, Step(None, "refused"), None, 0.0)
     message = Advice(found, [refused]).outcome().message
     assert "at small displacements" in message
     assert ("though they are not small" in message) == said

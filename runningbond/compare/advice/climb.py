@@ -93,13 +93,11 @@ class Advice:
         known, last = self.known, self.rungs[-1]
         answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
         message = known.meaning() or last.next.reason + known.above
-        if last.outcome is None and known.answer is not None:
-            finite = last.model.endswith("finite")
-            large = (known.displacement or 0.0) > known.tolerance
-            small = "; at small displacements" + (", though they are not small" if large else "")
-            message += small if finite else f"; {last.next.reason}"
-        elif last.outcome is not None and last.outcome.status != "collapse" and known.answer is not None:
-            message += f"; {last.model}: {last.next.reason}"
+        if known.answer is not None and (last.outcome is None or last.outcome.status != "collapse"):
+            finite, large = last.model.endswith("finite"), (known.displacement or 0.0) > known.tolerance
+            if finite:
+                message += "; at small displacements" + (", though they are not small" if large else "")
+            message += f"; {last.model}: {last.next.reason}" if last.outcome is not None or not finite else ""
         return replace(answer, seconds=known.seconds, message=message)
 
     def against_experiment(self) -> tuple[ModelError | None, str]:
@@ -121,8 +119,8 @@ class Advice:
         if step.finite:
             return [finite_peak(known, step)]
         # The curve past the peak is not needed for the bracket; blocks crack anywhere if the scene permits this.
-        wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
-        wanted["programs"] = short_search(known.scene)
+        cracks = "blocks" if known.cracks else "joints"
+        wanted: dict[str, Any] = {"past": 0, "cracks": cracks, "programs": short_search(known.scene)}
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
         tolerance, found = tolerance_of_draws(known.tolerance, step.draws), list[Outcome]()
         for k in range(step.draws):
@@ -159,17 +157,19 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
 
 
 def finite_peak(known: Knowledge, step: Step) -> Outcome:
-    """Push a wall past its peak load at finite displacements.
+    """Push a wall past its peak at finite displacements, where blocks crack only on their axes.
 
-    The bracket must reach down to the upper bound at small displacements; if its lower end is above this bound, inertia
-    has carried part of the load, and the outcome is undecided.
+    Undecided if it ends above the bound at small displacements, as inertia then bears part of the load, or if λ is
+    above the load under which the wall fell when its blocks could crack anywhere.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
     distance = PUSH_FACTOR * max(known.displacement or 0.0, tolerance) * scene.block_size
     reach: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam moves as its drive prescribes
     outcome = run_model(model, scene, tolerance, displacements="finite", **reach)
-    if outcome.status == "collapse" and bound is not None and outcome.lower is not None and outcome.lower > bound:
-        message = f"above the load that no wall carries at small displacements: {outcome.message}"
-        outcome = replace(outcome, status="undecided", multiplier=None, message=message)
+    reached, above = outcome.lower, "above the load that no wall carries at small displacements"
+    if known.cracks and known.answer is not None:
+        reached, bound, above = outcome.multiplier, known.answer.upper, "it bears more, as blocks crack only on axes"
+    if outcome.status == "collapse" and bound is not None and reached is not None and reached > bound:
+        outcome = replace(outcome, status="undecided", multiplier=None, message=f"{above}: {outcome.message}")
     return replace(outcome, model=step.name or "")

@@ -32,9 +32,7 @@ def _refuse(scene: Scene) -> None:
         )
         raise SceneError("load.live settlement", remedy)
     if scene.history is not None:
-        remedy = (
-            "is not advised on; take runningbond run or respond with dem-dynamic, or with fem where blocks are soft"
-        )
+        remedy = "is not advised on; take runningbond run or respond with dem-dynamic, or fem where blocks are soft"
         raise SceneError("load.history", remedy)
 
 
@@ -183,7 +181,9 @@ class Knowledge:
         """Meaning of the bracket of the answer, in words; empty if there is no answer."""
         if self.answer is None:
             return ""
-        return self._meaning(self.answer) + ("; blocks crack only on their axes" if self.halves else "")
+        anywhere = self.cracks and self.evidence != "finite"
+        where = "between their triangles, and on a finer mesh perhaps earlier" if anywhere else "on their axes"
+        return self._meaning(self.answer) + (f"; blocks crack only {where}" if self.scene.inner_joint else "")
 
     def _meaning(self, answer: Outcome) -> str:
         """Meaning of the bracket of an answer, in words."""

@@ -95,7 +95,7 @@ def _after_certificate(known: Knowledge, outcome: Outcome) -> Step:
 
 def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome) -> Step:
     if known.evidence == "certificate":
-        agrees = f"the history is {outcome.status}, and the certified loads stay"
+        agrees = f"the history is {outcome.status}, and the certified loads stay: {outcome.message}"
         return _enough(known, "a history agrees with them" if outcome.status == "collapse" else agrees)
     histories = known.histories
     onward = histories[histories.index(model) + 1 :]
