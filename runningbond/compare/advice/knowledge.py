@@ -60,7 +60,6 @@ class Knowledge:
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
         self.cracks = cracks_anywhere(self.scene)
-        self.halves = self.scene.inner_joint is not None and not self.cracks  # blocks crack only along their axes
         materials = self.scene.materials_of_joints
         self.frictionless = not any(each.friction for each in materials)
         self.softens = any(each.softens for each in materials)
