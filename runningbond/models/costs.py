@@ -9,7 +9,7 @@ measured over expected time of the models already run, with weights 1 / (log s)Â
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, hypot, log
 
 import numpy as np
@@ -91,6 +91,7 @@ def estimate(
         seconds *= law.weightless
     if advised and "cracks" in model.parameters and cracks_anywhere(scene):
         seconds *= law.cracked
+        law = replace(law, soft=1.0)  # only default settings are compared with others (`asks_others`)
     seconds = _dearer(model, law, scene) * (draws * seconds + law.start)
     return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
 

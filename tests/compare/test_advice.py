@@ -26,6 +26,7 @@ from runningbond.limit import limit
 from runningbond.limit.kinematics import is_determinate, sliding_dilates
 from runningbond.models import MODELS
 from runningbond.models.costs import estimate, pace
+from runningbond.models.second_opinion import asks_others
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness
@@ -781,6 +782,10 @@ def test_estimates_of_advice_include_cracks_between_triangles() -> None:
     assert advised > 5 * alone
     plain = panel(**STIFF, block__young=1e12)
     assert estimate(MODELS["fem"], plain, TOLERANCE, advised=True) == estimate(MODELS["fem"], plain, TOLERANCE)
+    soft = panel(**STIFF, block__young=1e9, inner_joint=inner)  # cracking blocks are not compared with rigid ones
+    assert asks_others(soft, {})
+    assert not asks_others(soft, {"cracks": "blocks"})
+    assert estimate(MODELS["fem"], soft, TOLERANCE, advised=True).seconds == advised
 
 
 def test_implausible_value_gives_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
