@@ -238,28 +238,28 @@ def _narrowed(
 ) -> tuple[InnerProgram, InteriorPoint | None, int]:
     """Solve programs with more and more resultants; return the last one, its interior point, and all iterations.
 
-    If Ctrl-C ended a program, the one before counts and its point is marked `interrupted`; None if there was none.
+    After Ctrl-C the last program that was solved counts, and its point is marked `interrupted`; None if there was none.
     """
     aim, iterations, nearest, best = target_width(system), 0, 1.0, list[Array]()
     program, point = InnerProgram(system, joints, known), None
-    for _ in range(ROUNDS):
-        following = InnerProgram(system, joints, known)
-        accuracy = min(max(nearest, aim) / 1e3, ROUGH)
-        try:
+    try:
+        for _ in range(ROUNDS):
+            following = InnerProgram(system, joints, known)
+            accuracy = min(max(nearest, aim) / 1e3, ROUGH)
             program, point = following, interior_point(following.arguments(), accuracy)
-        except KeyboardInterrupt:
-            return program, point and replace(point, interrupted=True), iterations
-        iterations += point.iterations
-        if point.status != "optimal":
-            break
-        found = program.solution("optimal", point.forces, point.motion, iterations)
-        motions = [found.motion, *(each + share * (found.motion - each) for each in best for share in BETWEEN)]
-        for motion in motions:
-            known = known.nearer(joints, system.crushed_jumps(motion))
-        best = [min(best + motions, key=system.kinematic_multiplier)]
-        nearest = _width(system, replace(found, motion=best[0]))
-        if _width(system, found) <= aim / 2 and accuracy <= aim / 1e3:
-            break
+            iterations += point.iterations
+            if point.status != "optimal":
+                break
+            found = program.solution("optimal", point.forces, point.motion, iterations)
+            motions = [found.motion, *(each + share * (found.motion - each) for each in best for share in BETWEEN)]
+            for motion in motions:
+                known = known.nearer(joints, system.crushed_jumps(motion))
+            best = [min(best + motions, key=system.kinematic_multiplier)]
+            nearest = _width(system, replace(found, motion=best[0]))
+            if _width(system, found) <= aim / 2 and accuracy <= aim / 1e3:
+                break
+    except KeyboardInterrupt:
+        return program, point and replace(point, interrupted=True), iterations
     return program, point, iterations
 
 

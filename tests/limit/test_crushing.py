@@ -17,7 +17,7 @@ from scipy.sparse import csc_matrix, eye_array, hstack, vstack
 from runningbond.compare.published import published_scene
 from runningbond.limit import crushed, equilibrium, limit, limit_state
 from runningbond.limit.associated import INTERRUPTED
-from runningbond.limit.crushed import InnerProgram, first_resultants
+from runningbond.limit.crushed import InnerProgram, Resultants, first_resultants
 from runningbond.limit.crushing import Crushing, _boundary
 from runningbond.limit.interior_point import InteriorPoint, interior_point
 from runningbond.limit.kinematics import dead_load, live_load, movable_freedoms
@@ -587,3 +587,24 @@ def test_ctrl_c_keeps_bracket_of_last_program(monkeypatch: pytest.MonkeyPatch, w
     assert outcome.upper >= exact * (1 - NARROW)
     assert outcome.upper - outcome.lower < {2: 2.0, 8: 0.01}[when] * exact
     assert len(outcome.motion)
+
+
+def test_ctrl_c_between_programs_keeps_bracket_of_last_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    """While resultants are sought on mechanisms of the second program, whose forces and mechanism are known."""
+    blocks = [rectangle(x, 0.5 * k, 1.0, 0.5) for k in range(4) for x in (0.0, 1.0)]
+    scene = built(blocks, JointMaterial(0.65, compressive_strength=2e5))
+    exact, nearer, searches = collapse(scene), Resultants.nearer, [0]
+
+    def seek(known: Resultants, joints: Crushing, jumps: Array) -> Resultants:
+        searches[0] += 1
+        if searches[0] == 3:
+            raise KeyboardInterrupt
+        return nearer(known, joints, jumps)
+
+    monkeypatch.setattr(Resultants, "nearer", seek)
+    outcome = limit(scene)
+    assert (outcome.status, outcome.message[: len(INTERRUPTED)]) == ("undecided", INTERRUPTED)
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 0.0 < outcome.lower <= exact * (1 + NARROW)
+    assert exact * (1 - NARROW) <= outcome.upper < 2 * exact
