@@ -480,7 +480,7 @@ def test_uniform_strain_has_hookes_stress(modes: ModeCount) -> None:
 
 @pytest.mark.parametrize("settings", [{"cells": 2, "modes": "all"}, {"cracks": "blocks"}])
 def test_run_is_recorded_on_mesh_of_its_settings(settings: dict[str, Any], tmp_path: Path) -> None:
-    """For non-default settings, both with two cells in half a block; at rest, the mean vertical stress is that at half the height."""
+    """For non-default settings, with two cells; at rest, the mean vertical stress is that at half the height."""
     inner = {"friction": 0.6, "cohesion": 1e6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     crack = {"inner_joint": inner} if "cracks" in settings else {}
     scene = panel(wall__length=0.48, wall__height=0.12, block__young=1e9, **STIFF, **crack)
