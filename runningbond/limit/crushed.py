@@ -40,6 +40,12 @@ Mechanisms of early programs are far from the final one: resultants between them
 Ben-Ameur & Neto 2007).
 """
 
+STALLED, STALLS = 0.9, 2
+"""Ratio of the widths of two successive brackets above which the next program is solved as accurately as the last one,
+and number of times in a row that it may be exceeded. With strong joints the errors of a mechanism that is not repaired
+keep brackets wide, whatever resultants are added.
+"""
+
 ROUNDS = 60
 """Largest number of programs; after them the bracket keeps the width that it has."""
 
@@ -240,12 +246,13 @@ def _narrowed(
 
     After Ctrl-C the last program that was solved counts, and its point is marked `interrupted`; None if there was none.
     """
-    aim, iterations, nearest, best = target_width(system), 0, 1.0, list[Array]()
+    aim, iterations, nearest, best, stalls = target_width(system), 0, 1.0, list[Array](), 0
+    finest = aim / 1e3
     program, point = InnerProgram(system, joints, known), None
     try:
         for _ in range(ROUNDS):
             following = InnerProgram(system, joints, known)
-            accuracy = min(max(nearest, aim) / 1e3, ROUGH)
+            accuracy = finest if stalls else min(max(nearest / 1e3, finest), ROUGH)
             program, point = following, interior_point(following.arguments(), accuracy)
             iterations += point.iterations
             if point.status != "optimal":
@@ -255,8 +262,9 @@ def _narrowed(
             for motion in motions:
                 known = known.nearer(joints, system.crushed_jumps(motion))
             best = [min(best + motions, key=system.kinematic_multiplier)]
-            nearest = _width(system, replace(found, motion=best[0]))
-            if _width(system, found) <= aim / 2 and accuracy <= aim / 1e3:
+            before, nearest = nearest, _width(system, replace(found, motion=best[0]))
+            stalls = stalls + 1 if nearest > STALLED * before else 0
+            if accuracy <= finest and (_width(system, found) <= aim / 2 or stalls > STALLS):
                 break
     except KeyboardInterrupt:
         return program, point and replace(point, interrupted=True), iterations
