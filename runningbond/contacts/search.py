@@ -231,7 +231,8 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     along = np.abs(apart[:, 1] * normal[:, 0] - apart[:, 0] * normal[:, 1])
     # Corners beyond the end of the side that have not penetrated may still do so, except those far below the side:
     # until the next search blocks move by a margin against each other, and 2 · overlap − depth grows by √5 margins at
-    # most, where the overlap of blocks that are apart is their distance, negative.
+    # most, if the axis of the least overlap lies within a right angle of the side's normal. The overlap of blocks that
+    # are apart is negative: their gap along that axis.
     beside = (opening >= 0) & (along >= outline.straight[side])
     deeper = depth - FASTEST_OPENING * contacts.margin
     asked = np.flatnonzero(depth > CHECKED_DEPTH * outline.margin)
