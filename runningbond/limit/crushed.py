@@ -42,8 +42,8 @@ Ben-Ameur & Neto 2007).
 
 STALLED, STALLS = 0.9, 2
 """Ratio of the widths of two successive brackets above which the next program is solved as accurately as the last one,
-and number of times in a row that it may be exceeded. With strong joints the errors of a mechanism that is not repaired
-keep brackets wide, whatever resultants are added.
+and number of times in a row that it may be exceeded before forces and mechanism are repaired to see how wide their
+bracket is: with strong joints, errors of a mechanism that is not repaired keep it wide, whatever resultants are added.
 """
 
 ROUNDS = 60
@@ -184,11 +184,11 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
     rests, known = _resting(dead, joints)
     if not rests:
         return ForceSolution.none("numerical" if rests is None else "infeasible"), rests
-    program, point, iterations = _narrowed(system, joints, known)
+    program, point, iterations = _narrowed(system, dead, joints, known)
     if point is None or point.status != "optimal":
         return ForceSolution.none("budget" if point is None else point.status, iterations), True
     with finishing() as interruptions:
-        forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
+        forces, motion = _repaired(program, point, dead)
     found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
     is_interrupted = point.interrupted or bool(interruptions)
     if found is None or not (is_interrupted or _width(system, found) <= target_width(system)):
@@ -219,12 +219,14 @@ def _best_bounds(program: InnerProgram, forces: Array | None, motion: Array | No
     return replace(found, motion=min(motions, key=system.kinematic_multiplier))
 
 
-def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None) -> tuple[Array | None, Array | None]:
+def _repaired(program: InnerProgram, point: InteriorPoint, dead: Equilibrium) -> tuple[Array | None, Array | None]:
     """Exact forces ``(n,)`` and mechanism ``(m,)``, unknowns and multipliers of the program; None if not found.
 
-    Forces are balanced with and without resultants of nearly zero force; the larger multiplier counts.
+    Forces are balanced with and without resultants of nearly zero force; the larger multiplier counts. `dead` is the
+    system under its dead load.
     """
     arguments, n = program.arguments(), len(program.known.owner)
+    resting = _rest(replace(program, system=dead))
     within = None if resting is None else loaded(program.system, arguments, resting)
     idle = np.arange(len(point.forces)) < n
     idle &= point.forces < IDLE_FORCE * point.forces[:n].max()
@@ -240,7 +242,7 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
 
 
 def _narrowed(
-    system: Equilibrium, joints: Crushing, known: Resultants
+    system: Equilibrium, dead: Equilibrium, joints: Crushing, known: Resultants
 ) -> tuple[InnerProgram, InteriorPoint | None, int]:
     """Solve programs with more and more resultants; return the last one, its interior point, and all iterations.
 
@@ -264,11 +266,23 @@ def _narrowed(
             best = [min(best + motions, key=system.kinematic_multiplier)]
             before, nearest = nearest, _width(system, replace(found, motion=best[0]))
             stalls = stalls + 1 if nearest > STALLED * before else 0
-            if accuracy <= finest and (_width(system, found) <= aim / 2 or stalls > STALLS):
+            if accuracy <= finest and _width(system, found) <= aim / 2:
                 break
+            if accuracy <= finest and stalls > STALLS:
+                if _is_proved(program, point, dead):
+                    break
+                stalls = 1
     except KeyboardInterrupt:
         return program, point and replace(point, interrupted=True), iterations
     return program, point, iterations
+
+
+def _is_proved(program: InnerProgram, point: InteriorPoint, dead: Equilibrium) -> bool:
+    """Whether repaired forces and mechanism of a program are within `target_width`."""
+    forces, motion = _repaired(program, point, dead)
+    if forces is None or motion is None:
+        return False
+    return _width(program.system, program.solution("optimal", forces, motion, 0)) <= target_width(program.system)
 
 
 def _rest(program: InnerProgram) -> Array | None:
