@@ -189,7 +189,7 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
         return ForceSolution.none("budget" if point is None else point.status, iterations), True
     with finishing() as interruptions:
         forces, motion = _repaired(program, point, dead)
-    found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
+    found = _solution(program, forces, motion)
     is_interrupted = point.interrupted or bool(interruptions)
     if found is None or not (is_interrupted or _width(system, found) <= target_width(system)):
         try:
@@ -241,6 +241,11 @@ def _repaired(program: InnerProgram, point: InteriorPoint, dead: Equilibrium) ->
     return forces, motion
 
 
+def _solution(program: InnerProgram, forces: Array | None, motion: Array | None) -> ForceSolution | None:
+    """Solution with repaired forces and mechanism; None if either was not found."""
+    return None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
+
+
 def _narrowed(
     system: Equilibrium, dead: Equilibrium, joints: Crushing, known: Resultants
 ) -> tuple[InnerProgram, InteriorPoint | None, int]:
@@ -279,10 +284,8 @@ def _narrowed(
 
 def _is_proved(program: InnerProgram, point: InteriorPoint, dead: Equilibrium) -> bool:
     """Whether repaired forces and mechanism of a program are within `target_width`."""
-    forces, motion = _repaired(program, point, dead)
-    if forces is None or motion is None:
-        return False
-    return _width(program.system, program.solution("optimal", forces, motion, 0)) <= target_width(program.system)
+    found = _solution(program, *_repaired(program, point, dead))
+    return found is not None and _width(program.system, found) <= target_width(program.system)
 
 
 def _rest(program: InnerProgram) -> Array | None:

@@ -8,8 +8,8 @@ increase the cost are not shown. The pace transfers the laws from one machine to
 measured over expected time of the models already run, with weights 1 / (log s)² for a law with a factor s of scatter.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import exp, hypot, log
 
 import numpy as np
@@ -89,14 +89,14 @@ def estimate(
     seconds *= (FITTED_TOLERANCE / tolerance_of_draws(tolerance, draws)) ** law.finer
     if not any(scene.load.gravity):
         seconds *= law.weightless
-    if advised and "cracks" in model.parameters and cracks_anywhere(scene):
+    settings = {"cracks": "blocks"} if advised and "cracks" in model.parameters and cracks_anywhere(scene) else {}
+    if settings:
         seconds *= law.cracked
-        law = replace(law, soft=1.0)  # only default settings are compared with others (`asks_others`)
-    seconds = _dearer(model, law, scene) * (draws * seconds + law.start)
+    seconds = _dearer(model, law, scene, settings) * (draws * seconds + law.start)
     return Estimate(pace.factor * seconds, exp(hypot(log(law.spread), log(pace.spread))))
 
 
-def _dearer(model: Model, law: Cost, scene: Scene) -> float:
+def _dearer(model: Model, law: Cost, scene: Scene, settings: Mapping[str, str]) -> float:
     """Factor on the cost for the most expensive material property that a model reads, and for soft blocks."""
     joints = scene.materials_of_joints
     causes = (
@@ -105,7 +105,7 @@ def _dearer(model: Model, law: Cost, scene: Scene) -> float:
         ("closure", any(each.closure is not None for each in joints), law.crushed),
     )
     dearest = max((factor for key, there, factor in causes if there and f"joint.{key}" in model.reads), default=1.0)
-    return dearest * (law.soft if asks_others(scene, {}) else 1.0)
+    return dearest * (law.soft if asks_others(scene, settings) else 1.0)
 
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome], draws: Sequence[int] = ()) -> Pace:

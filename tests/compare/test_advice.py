@@ -775,7 +775,7 @@ def test_estimates_include_costly_features() -> None:
 
 
 def test_estimates_of_advice_include_cracks_between_triangles() -> None:
-    """Only `advise` lets blocks crack there by itself. It expected 9 s for a wall that takes over a minute."""
+    """Only `advise` lets blocks crack there by itself, which takes many times as long."""
     inner = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     cracking = panel(**STIFF, block__young=1e12, inner_joint=inner)
     alone, advised = (estimate(MODELS["fem"], cracking, TOLERANCE, advised=each).seconds for each in (False, True))

@@ -479,7 +479,7 @@ def pulled_up(**settings: Any) -> Outcome:
 
 
 def test_block_in_tension_cracks_across() -> None:
-    """Tensile strength times section; blocks one cell high, once the default, bore five times as much."""
+    """Tensile strength times section; blocks one cell high, once the default, bore several times as much."""
     outcome = pulled_up()
     assert outcome.multiplier == pytest.approx(1e5 * 0.12 * float(wall(None).thickness), rel=0.01)
     assert "one cell high" not in outcome.message

@@ -611,7 +611,7 @@ def test_ctrl_c_between_programs_keeps_bracket_of_last_program(monkeypatch: pyte
 
 
 def test_strong_joints_need_few_programs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Errors of mechanisms kept the bracket at 2e-6, so that all 60 programs were solved, none of them accurately."""
+    """Errors of mechanisms kept brackets wide, so that all 60 programs were solved, none of them accurately."""
     found = list[InteriorPoint]()
 
     def solve(*arguments: Any) -> InteriorPoint:
