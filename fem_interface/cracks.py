@@ -3,6 +3,8 @@
 The scene gives the strength and stiffness of inner joints (`Scene.inner_joint`). Rigid blocks crack along their axis
 only; the mesh of such a scene has triangle edges along that axis. Here all other edges between triangles become joints
 of the same material too. The paper puts such interfaces between all of its triangles (Sec. 5).
+
+A stone also cracks right beside a joint, under the same tractions. Joints are therefore at most as strong as the stone.
 """
 
 from dataclasses import dataclass, replace
@@ -15,7 +17,20 @@ from scipy.sparse import coo_array, csr_array
 
 from meshing import WallMesh
 from runningbond.joints import joint_stiffness
-from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
+from runningbond.scene import (
+    Action,
+    Array,
+    Blocks,
+    Forces,
+    Indices,
+    JointMaterial,
+    Joints,
+    Load,
+    Mask,
+    Pins,
+    Scene,
+    SceneError,
+)
 from runningbond.scene.ranges import one_of
 
 from .joint_elements import edges_between, edges_of, find_edges
@@ -25,6 +40,10 @@ Cracks: TypeAlias = Literal["joints", "blocks"]
 
 CONGRUENT = 1e-6
 """Rounding unit of triangle corners when congruent triangles are detected, relative to the smallest triangle's size."""
+
+
+STRENGTH = "friction", "cohesion", "tensile_strength", "fracture_energy_1", "fracture_energy_2", "softening"
+CRUSHING = "compressive_strength", "cap_shear", "compressive_fracture_energy", "peak_closure"
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +141,39 @@ def _nearest(blocks: Blocks, owner: Indices, block: int, at: Array) -> int:
     return int(own[np.argmin(shapely.distance(shapely.Point(at), blocks.shapes(own)))])
 
 
+def at_most_as_strong(joint: JointMaterial, stone: JointMaterial) -> JointMaterial:
+    """Material of a joint beside which the stone may fail: its stiffness, with the smaller strength of the two.
+
+    The stone's strength, with its softening, replaces the joint's if no traction that the stone bears breaks the joint;
+    otherwise the tensile strength is at most the stone's. The smaller compressive strength counts, with its softening.
+    Users' own laws stay as they are.
+    """
+    if joint.law is not None or stone.law is not None:
+        return joint
+    if _is_weaker(stone, joint):
+        strength = {name: getattr(stone, name) for name in STRENGTH}
+        joint = replace(joint, **strength)
+    elif stone.tension < joint.tension:
+        joint = replace(joint, tensile_strength=stone.tension)
+    if stone.compressive_strength is not None and stone.compressive_strength < (joint.compressive_strength or np.inf):
+        crushing = {name: getattr(stone, name) for name in CRUSHING}
+        joint = replace(joint, **crushing)
+    return joint
+
+
+def has_weaker_stone(scene: Scene) -> bool:
+    """Whether a joint of a scene is stronger than the stone beside it."""
+    stone = scene.inner_joint
+    return stone is not None and any(at_most_as_strong(each, stone) is not each for each in scene.materials_of_joints)
+
+
+def _is_weaker(one: JointMaterial, other: JointMaterial) -> bool:
+    """Whether all tractions that one Mohr–Coulomb material bears are less than what another one bears."""
+    in_tension = [each.cohesion - one.tension * each.friction for each in (one, other)]
+    fits = one.friction <= other.friction and one.tension <= other.tension and in_tension[0] <= in_tension[1]
+    return fits and (one.friction, one.cohesion, one.tension) != (other.friction, other.cohesion, other.tension)
+
+
 def added_compliance(parts: Pieces) -> float:
     """Largest compliance of an inner joint relative to that of the two triangles beside it.
 
@@ -157,10 +209,10 @@ def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
         raise SceneError(other[0], 'does not go with cracks = "blocks", in triangles that are not held by it')
     if scene.inner_joint is None:
         raise SceneError("inner_joint", "is missing; cracks inside blocks need its strength and its stiffness")
-    return _in_triangles(scene, mesh)
+    return _in_triangles(scene, mesh, scene.inner_joint)
 
 
-def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
+def _in_triangles(scene: Scene, mesh: WallMesh, stone: JointMaterial) -> Pieces:
     number = np.arange(len(scene.blocks))
     whole = scene.fixed | scene.is_beam
     loose = ~whole[mesh.triangle_block]
@@ -188,7 +240,8 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     between_pieces = np.empty((len(scene.joints) + len(inside[0]), 2), dtype=np.int64)
     between_pieces[joint[first]] = np.column_stack([block[side[first, 0]] for side in sides])
     between_pieces[np.flatnonzero(scene.joints.at_corner)] = _at_corners(scene, blocks, owner)
-    inner = scene.joint_materials.index(scene.inner_joint)
+    inner = scene.joint_materials.index(stone)
+    limited = tuple(at_most_as_strong(each, stone) for each in scene.joint_materials)
     passed_on = partial(PassedOn, wall=scene, owner=owner)
     parted = replace(
         scene,
@@ -205,6 +258,7 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
             np.concatenate([scene.joints.corner_length, np.zeros(len(inside[0]))]),
         ),
         material_of_block=scene.material_of_block[owner],
+        joint_materials=limited,
         material_of_joint=np.append(scene.material_of_joint, np.full(len(inside[0]), inner)),
     )
     shape = _shapes(points, first_node, held)

@@ -39,7 +39,7 @@ from runningbond.scene import Array, Scene, SceneError, check_scene
 from runningbond.scene.ranges import one_of
 
 from .coupled_masses import with_coupled_masses
-from .cracks import Cracks, added_compliance
+from .cracks import Cracks, added_compliance, has_weaker_stone
 from .fictitious_inertia import with_fictitious_inertia
 from .finite_system import finite_system
 from .fracture import Energies
@@ -98,7 +98,8 @@ def fem(
     points
         Whether the rule is applied to each joint element, or to each whole joint as for rigid blocks.
     cracks
-        Whether blocks stay whole, or may crack between all of their triangles with the scene's `inner_joint`.
+        Whether blocks stay whole, or may crack between all of their triangles with the scene's `inner_joint`. Joints
+        are then at most as strong as that, as stones also crack right beside them.
     loads
         Whether loads proportional to mass are consistent with the mass, or act at inner nodes as in the paper.
     mass_scaling
@@ -139,7 +140,7 @@ def fem(
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
             run = run_of_longer_steps(wall, system) if mass_scaling else Run(system)
-    note = _note(wall, run.system, cracks, cells)
+    note = _note(scene, wall, run.system, cracks, cells)
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
@@ -201,7 +202,7 @@ def run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
     return Run(with_fictitious_inertia(wall, system), viscous=CALMER)
 
 
-def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks, cells: int) -> str:
+def _note(scene: Scene, wall: ModalWall, system: BlockSystem, cracks: Cracks, cells: int) -> str:
     """Note for the outcome's message on scaled masses, and on the compliance and the paths of cracks inside blocks."""
     deformed = wall.stiffness > 0
     factor = largest_scaling(system.mass[deformed], wall.mass[deformed])
@@ -213,7 +214,9 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks, cells: int) -> s
     if cracks == "blocks" and (more := added_compliance(wall.pieces)) > REPORTED_COMPLIANCE:
         softer = f"inner joints make blocks up to {more:.0%} softer: a larger inner_joint.normal_stiffness would not"
     no_path = "no crack passes level through blocks one cell high: cells = 2 would let it"
-    return joined(masses, softer, no_path if cracks == "blocks" and cells == 1 else "")
+    limited = "joints stronger than inner_joint have the strength of the stone beside them"
+    told = {softer: True, no_path: cells == 1, limited: has_weaker_stone(scene)} if cracks == "blocks" else {}
+    return joined(masses, *(line for line, holds in told.items() if holds))
 
 
 def fem_response(

@@ -132,6 +132,16 @@ def _materials(scene: Scene) -> Iterator[str]:
                 yield from _friction(f"{table}.friction", value)
 
 
+def _stones(scene: Scene) -> Iterator[str]:
+    """Warn about joints that bear more tension than stones: in most models these crack on their axes only."""
+    stone = scene.inner_joint
+    for material in scene.materials_of_joints if stone else ():
+        if stone and material.tension > stone.tension:
+            more = f"{material.tension:.4g} Pa is above that of inner_joint, {stone.tension:.4g} Pa"
+            only = 'only fem with cracks = "blocks" lets stones crack right beside it'
+            yield f"{table_of(material)}: its tensile strength of {more}; {only}"
+
+
 def _friction(key: str, friction: float) -> Iterator[str]:
     """Warn about an unusual tan φ; 0 is intended: a joint without friction."""
     least, most = FRICTION
@@ -297,4 +307,4 @@ def _head_joints(scene: Scene) -> Iterator[str]:
         yield f"wall: no head joint: blocks that stand side by side are up to {gap} apart, and nowhere touch"
 
 
-CHECKS = (_sizes, _materials, _constant_forces, _ties, _beam, _shaking, _courses, _head_joints)
+CHECKS = (_sizes, _materials, _stones, _constant_forces, _ties, _beam, _shaking, _courses, _head_joints)

@@ -5,9 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.sparse.linalg import spsolve
 
-from fem_interface.cracks import Cracks, added_compliance, pieces
+from fem_interface.cracks import Cracks, added_compliance, at_most_as_strong, pieces
 from fem_interface.fracture import fractured
 from fem_interface.frequency_shift import modal_stiffness
 from fem_interface.joint_elements import nodal_jump
@@ -487,6 +489,54 @@ def test_block_in_tension_cracks_across() -> None:
 
 def test_blocks_one_cell_high_are_told_to_have_no_level_crack() -> None:
     assert "one cell high" in pulled_up(cells=1, budget=200).message
+
+
+@pytest.mark.parametrize("cells", [1, 2, 3])
+def test_stones_crack_right_beside_stronger_joints(cells: int) -> None:
+    """A column pushed at its top turns over its toe, its foot in tension at the stone's strength: F h = f_t t b² / 2.
+
+    Cracks between triangles alone pass above the bed: one, two and three cells bore 2.0, 1.35 and 1.24 times this load.
+    """
+    size = {"wall__length": 0.12, "wall__height": 0.24, "wall__block_width": 0.24, "wall__block_height": 0.12}
+    push = {"gravity": 0.0, "live": {"kind": "point", "at": [0.0, 0.24], "force": [1, 0]}}
+    scene = wall({"cohesion": 1e6, "tensile_strength": 1e5}, 1e11, **size, joint__cohesion=1e7, load=push)
+    outcome = fem(scene, cracks="blocks", cells=cells)
+    exact = 1e5 * float(scene.thickness) * 0.12**2 / 2 / 0.24
+    assert outcome.multiplier == pytest.approx(exact, rel=0.01)
+    assert "strength of the stone beside them" in outcome.message
+
+
+def cohesive() -> st.SearchStrategy[JointMaterial]:
+    """Mohr–Coulomb materials with a tension cut-off, perfectly plastic."""
+    number = st.sampled_from([0.0, 0.3, 0.6, 1.0, 1.7, 2.5])
+    return st.builds(
+        lambda friction, cohesion, part: JointMaterial(friction, cohesion, part * cohesion / max(friction, 0.5)),
+        *(number, number, st.sampled_from([0.0, 0.5, 1.0])),
+    )
+
+
+@given(cohesive(), cohesive(), st.floats(-10, 6), st.floats(-5, 5))
+def test_joints_are_at_most_as_strong_as_stones(joint: JointMaterial, stone: JointMaterial, σ: float, τ: float) -> None:
+    """The limited joint bears what both bear, and nothing that breaks the joint or is above the stone's tension."""
+
+    def borne(material: JointMaterial) -> bool:
+        return abs(τ) <= material.cohesion - σ * material.friction and σ <= material.tension
+
+    limited = at_most_as_strong(joint, stone)
+    if borne(joint) and borne(stone):
+        assert borne(limited)
+    if borne(limited):
+        assert borne(joint)
+        assert σ <= stone.tension
+
+
+def test_softening_and_crushing_of_the_stone_come_with_its_strength() -> None:
+    stiffness = Stiffness(1e10, 4e9)
+    joint = JointMaterial(0.75, 4e5, 3e5, stiffness, 0.01, 50.0, 400.0, compressive_strength=1e7, name="mortar")
+    stone = JointMaterial(0.7, 2e5, 1e5, None, 0.0, 5.0, 40.0, "exponential", 4e6, 2e4, name="inner_joint")
+    limited = at_most_as_strong(joint, stone)
+    assert limited == replace(stone, elasticity=stiffness, inset=0.01, name="mortar")
+    assert at_most_as_strong(stone, joint) is stone
 
 
 @pytest.mark.parametrize("energy", [None, 0.0, 5.0])

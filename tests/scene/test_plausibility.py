@@ -58,6 +58,12 @@ def pressed(force: float, dead: float = 0.0) -> dict[str, Any]:
     return beams | ({"load__dead": [line]} if dead else {})
 
 
+def glued(stone: float) -> dict[str, Any]:
+    """Joints with a tensile strength of 0.2 MPa, and that of the stones beside them [Pa]."""
+    inner = {"friction": 0.6, "cohesion": 6e5, "tensile_strength": stone}
+    return joint(tensile_strength=2e5) | {"inner_joint": inner}
+
+
 def settles(by: float, path: list[float] | None = None) -> dict[str, Any]:
     live = {"kind": "settlement", "box": [[0.0, -1.0], [0.72, 0.1]], "by": [0.0, -by]}
     return {"load__live": live if path is None else live | {"path": path}}
@@ -88,6 +94,7 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (joint(fracture_energy_1=0.02), "joint.fracture_energy_1 = 0.02: * 0.02 N/mm", joint(fracture_energy_1=20.0)),
         (stiff(normal_stiffness=10.0), "joint.normal_stiffness = 10: * is 10 N/mm³ meant", stiff()),
         (stiff(shear_stiffness=4.0), "joint.shear_stiffness = 4: * is 4 N/mm³ meant", stiff(shear_stiffness=4e6)),
+        (glued(1.9e5), "joint: its tensile strength of 2e+05 Pa is above * fem with cracks", glued(2e5)),
         ({"load__gravity": 981.0}, "load.gravity = 981: is not within 9.3 … 10.3 m/s²", 10.0),
         (scaled(1e3, 120.0), "wall.length = 1440: * is 1440 mm meant, which is 1.44 m?", scaled(10.0, 1.0)),
         (scaled(0.01, 0.001), "wall.length = 0.0144: is not within 0.05 … 200 m", scaled(0.1, 0.012)),
