@@ -60,7 +60,7 @@ def pressed(force: float, dead: float = 0.0) -> dict[str, Any]:
 
 def glued(stone: float) -> dict[str, Any]:
     """Joints with a tensile strength of 0.2 MPa, and that of the stones beside them [Pa]."""
-    inner = {"friction": 0.6, "cohesion": 6e5, "tensile_strength": stone}
+    inner = {"friction": 0.6, "cohesion": 6e5, "tensile_strength": stone, "mortar": MORTAR}
     return joint(tensile_strength=2e5) | {"inner_joint": inner}
 
 
