@@ -1,7 +1,8 @@
 """Application of the dead load: at once, or slowly if joints break or the wall falls under the sudden load.
 
-Preloads of ties come with it. A beam that is held at its height from then on keeps whatever thrust there is, and ties
-that have dragged blocks along have lost their preload: in both cases the load also comes slowly if joints have slid.
+Preloads of ties come with it. A beam that is held at its height from then on keeps whatever thrust there is, ties that
+have dragged blocks along have lost their preload, and supports and beams that are led start from whatever thrust there
+is: in these cases the load also comes slowly if joints have slid.
 """
 
 from collections.abc import Callable
@@ -45,14 +46,16 @@ class UnderDeadLoad:
     steps: int  # steps taken, on every path
 
 
-def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observer) -> UnderDeadLoad:
+def put_on_dead_load(
+    run: Run, criteria: Criteria, observe: Observer = no_observer, *, is_led: bool = False
+) -> UnderDeadLoad:
     """Bring a wall to rest under its dead load.
 
     A load that is applied at once overshoots to twice its value. This matters to joints with irreversible damage or
     crushing, and to walls that sway far: if any joint is damaged or crushed, or the wall falls, the load is applied
-    again, slowly. Friction is irreversible too, but a mechanism does not depend on it unless the beam is held at its
-    height (joints that carried the overshoot then press too little) or ties are preloaded (blocks slide too far: ties
-    go slack).
+    again, slowly. Friction is irreversible too. This matters if the beam is held at its height (joints that carried the
+    overshoot then press too little), if ties are preloaded (blocks slide too far: ties go slack), and if the wall
+    `is_led` by a beam or by supports that move: the thrust under the dead load may last to the end of their way.
 
     Joints that become softer as they open let a wall lean far before it rests, as under the live load.
 
@@ -63,7 +66,7 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     """
     criteria = replace(criteria, collapse=criteria.softness * criteria.collapse, shortest=0)
     state, keeps = State.at_rest(run.system), keeps_damage(run)
-    held = len(run.system.late) > 0 or bool(run.system.ties.slack.any())
+    held = is_led or len(run.system.late) > 0 or bool(run.system.ties.slack.any())
     unseen = keeps or held
     verdict = settle(run, state, 0.0, criteria, no_observer if unseen else observe, sudden=True)
     # A fallen wall may have no contacts left that could be broken, or have swayed twice as far as under the load alone.

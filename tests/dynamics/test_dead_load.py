@@ -262,6 +262,33 @@ def test_fixed_height_beam_keeps_thrust_of_slow_dead_load(courses: Any, pressed:
         assert thrust[0] == pytest.approx(thrust[1], rel=2e-3)
 
 
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize(
+    ("pattern", "height", "friction", "support", "by"),
+    [
+        ([[1, 1], [0.5, 1, 0.5]], 0.1, 1.2, "base", [0.0, -0.002]),
+        ([[1, 1], [0.5, 1, 0.5], [1, 1]], 0.3, 0.7, "fixed-first-course", [-0.001, 0.0]),
+    ],
+)
+def test_share_on_a_settlement_is_that_after_a_slowly_applied_dead_load(
+    pattern: list[list[float]], height: float, friction: float, support: str, by: list[float], model: Any
+) -> None:
+    """A load applied at once made joints slide, and the share where the settlement ends was a sixth off."""
+    corner = {"kind": "point", "at": [0.6, height * len(pattern)], "force": [0.0, -1000.0]}
+    scene = courses(
+        pattern,
+        0.3,
+        height,
+        wall__thickness=0.2,
+        block={"density": 2000.0, "young": 1e12},
+        joint={"friction": friction, "normal_stiffness": 1e9, "shear_stiffness": 4e8},
+        support__kind=support,
+        load__dead=[corner],
+        load__live={"kind": "settlement", "box": [[-9.0, -9.0], [0.312, height / 2]], "by": by},
+    )
+    assert model(scene).multiplier == pytest.approx(dem_static(scene).multiplier, rel=5e-3)
+
+
 @pytest.mark.parametrize(("points", "lever"), [(2, 1.0), (3, 2 / 3), *at_length((9, 2 / 3))])
 def test_strut_under_fixed_height_beam_locks_by_centre_of_pressure(points: int, lever: float) -> None:
     """Under a block rotating about its pin, pressure on top varies linearly from one end: its centre is at 2/3 width.
