@@ -11,7 +11,7 @@ from runningbond.joints import JointPoints, wall_caps
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria
-from .path_curve import LITTLE, failing, late_growth
+from .path_curve import LITTLE, LOSS, failing, late_growth
 from .peaks import Peaks
 from .run import Observer, Run
 from .state import State
@@ -146,7 +146,9 @@ class Lead(ABC):
 
     def unfinished(self, curve: Array) -> tuple[str, bool]:
         """Note on a wall whose mechanism has not formed, and whether its answer can only become smaller."""
-        return "the wall still hardens", False
+        force = self.onward(curve)[:, 1]
+        has_failed = force[self.failing(curve)] <= LOSS * force.max()
+        return "the wall has only just failed" if has_failed else "the wall still hardens", False
 
     def has_come_free(self, row: TraverseRow) -> bool:
         """Whether supports that move carry nothing at a place of the path."""

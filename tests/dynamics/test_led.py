@@ -652,6 +652,30 @@ def elastic(model: Any, tolerance: float) -> Outcome:
     return outcome
 
 
+def test_wall_that_snaps_at_the_end_of_its_path_no_longer_hardens() -> None:
+    """Too late for an answer: its force grew within the last tenth of the path, but at the end there is none left."""
+    energies = {"fracture_energy_1": 5.0, "fracture_energy_2": 5.0}
+    joint = {"friction": 0.0, "cohesion": 2e5, "tensile_strength": 1e5, **energies}
+    glue = {"friction": 0.9, "cohesion": 1e8, "tensile_strength": 1e7}
+    stiff = {"normal_stiffness": 1e10, "shear_stiffness": 1e10}
+    beam = {"height": 0.1, "force": [0, -2e4], "condition": "level", "joint": "glue"}
+    wall = Wall.courses(
+        [[1]],
+        block_width=0.4,
+        block_height=0.1,
+        thickness=0.2,
+        density=2000.0,
+        live=None,
+        joint=joint | stiff | {"shear_stiffness": 4e9},
+        joints={"glue": glue | stiff},
+        beam={**beam, "drive": {"displacement": [8e-5, 0]}},
+    )
+    outcome = dem_dynamic(wall.scene)
+    assert outcome.status == "undecided"
+    assert outcome.curve[-1, 1] < 1e-3 * outcome.curve[:, 1].max()
+    assert "the wall has only just failed at the displacement asked for" in outcome.message
+
+
 @pytest.mark.parametrize("model", [dem_static, dem_dynamic])
 def test_elastic_wall_has_no_collapse_load_at_any_tolerance(model: Any) -> None:
     """Its force grows by a tenth over the last tenth of its path, which a tolerance of 0.12 once called a mechanism."""
