@@ -2,12 +2,14 @@
 
     python benchmarks/limit_large.py [BLOCKS …]
 
-Prints processor seconds, medians of runs in turn; HiGHS solves walls of up to `HIGHS_UP_TO` blocks.
+Walls are named by their number of blocks, one of `SIZES`. Prints processor seconds, medians of runs in turn; HiGHS
+solves walls of up to `HIGHS_UP_TO` blocks.
 """
 
+import argparse
 import statistics
-import sys
 import time
+from collections.abc import Sequence
 
 from runningbond.limit import equilibrium, limit
 from runningbond.limit.force_program import coulomb, solve_forces
@@ -18,6 +20,16 @@ SIZES = {300: (12, 24), 1176: (24, 48), 5000: (50, 99), 10000: (70, 140)}
 
 RUNS = 3
 HIGHS_UP_TO = 1176
+
+
+def chosen_sizes(description: str | None, default: Sequence[int]) -> list[int]:
+    """Sizes named on the command line, or those that are run by default."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sizes", nargs="*", type=int, default=list(default), metavar="BLOCKS")
+    sizes: list[int] = parser.parse_args().sizes
+    if unknown := [size for size in sizes if size not in SIZES]:
+        parser.error(f"no wall has {unknown[0]} blocks; choose from {', '.join(map(str, SIZES))}")
+    return sizes
 
 
 def wall(blocks: int, courses: int) -> Scene:
@@ -61,4 +73,4 @@ def main(sizes: list[int]) -> None:
 
 
 if __name__ == "__main__":
-    main([int(one) for one in sys.argv[1:]] or list(SIZES))
+    main(chosen_sizes(__doc__, list(SIZES)))

@@ -7,10 +7,9 @@ dissection and by a library's sparse factorisation (`static_pushover`).
 """
 
 import statistics
-import sys
 import time
 
-from limit_large import SIZES, wall
+from limit_large import SIZES, chosen_sizes, wall
 from static_pushover import linear_system
 
 from dem.static import dem_static
@@ -53,4 +52,4 @@ def stiff(size: int) -> Scene:
 
 
 if __name__ == "__main__":
-    main([int(one) for one in sys.argv[1:]] or list(SIZES)[:3])
+    main(chosen_sizes(__doc__, list(SIZES)[:3]))

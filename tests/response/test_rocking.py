@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -441,3 +442,13 @@ def test_joints_with_strength_rock_as_beds_of_springs() -> None:
     assert bed > 1.3 * BLOCK.peak(amplitude, period, 0.5)
     assert "Housner's" in impact_note(scene.with_joint(compressive_strength=1e9))
     assert not impact_note(scene)
+
+
+def test_benchmark_beside_other_engines_measures_the_rotation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`benchmarks/peers/rocking_block.py`, which runs without the engines; the block turns by half of α."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "benchmarks" / "peers"))
+    beside = import_module("rocking_block")
+    pulse = beside.Pulse(0.5, 2, 1.7)
+    rotation, _, seconds = beside.ours(1e10)(pulse)
+    assert rotation == pytest.approx(pulse.exact, rel=0.005)
+    assert seconds > pulse.period
