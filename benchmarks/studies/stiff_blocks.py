@@ -5,7 +5,7 @@ the elastic wall, with mass scaling of each mode by itself and as in `fem`, and 
 the latter. Second: brackets, time steps, processor seconds, and the ratio of the seconds of both models.
 
     python benchmarks/studies/stiff_blocks.py
-    python benchmarks/studies/stiff_blocks.py --young 1 100 wall-w1 arch-27
+    python benchmarks/studies/stiff_blocks.py wall-w1 arch-27 --young 1 100
 """
 
 import argparse
