@@ -1,8 +1,6 @@
-"""Application of the dead load: at once, or slowly if joints break or the wall falls under the sudden load.
+"""Application of the dead load: at once, or slowly if joints slide or break or the wall falls under the sudden load.
 
-Preloads of ties come with it. A beam that is held at its height from then on keeps whatever thrust there is, ties that
-have dragged blocks along have lost their preload, and supports and beams that are led start from whatever thrust there
-is: in these cases the load also comes slowly if joints have slid.
+Preloads of ties come with it.
 """
 
 from collections.abc import Callable
@@ -12,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from runningbond.joints.law import PLASTIC_CLOSURE, KernelLaw
+from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, settle
@@ -46,16 +44,12 @@ class UnderDeadLoad:
     steps: int  # steps taken, on every path
 
 
-def put_on_dead_load(
-    run: Run, criteria: Criteria, observe: Observer = no_observer, *, is_led: bool = False
-) -> UnderDeadLoad:
+def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observer) -> UnderDeadLoad:
     """Bring a wall to rest under its dead load.
 
-    A load that is applied at once overshoots to twice its value. This matters to joints with irreversible damage or
-    crushing, and to walls that sway far: if any joint is damaged or crushed, or the wall falls, the load is applied
-    again, slowly. Friction is irreversible too. This matters if the beam is held at its height (joints that carried the
-    overshoot then press too little), if ties are preloaded (blocks slide too far: ties go slack), and if the wall
-    `is_led` by a beam or by supports that move: the thrust under the dead load may last to the end of their way.
+    A load that is applied at once overshoots to twice its value. This matters to joints that slide, are damaged or are
+    crushed, which is irreversible, and to walls that sway far: if any of this happens, the load is applied again,
+    slowly. The thrusts that slip leaves may last until the wall collapses, or to the end of the way of a support.
 
     Joints that become softer as they open let a wall lean far before it rests, as under the live load.
 
@@ -65,16 +59,14 @@ def put_on_dead_load(
         As in `hold_load`.
     """
     criteria = replace(criteria, collapse=criteria.softness * criteria.collapse, shortest=0)
-    state, keeps = State.at_rest(run.system), keeps_damage(run)
-    held = is_led or len(run.system.late) > 0 or bool(run.system.ties.slack.any())
-    unseen = keeps or held
-    verdict = settle(run, state, 0.0, criteria, no_observer if unseen else observe, sudden=True)
+    state = State.at_rest(run.system)
+    verdict = settle(run, state, 0.0, criteria, sudden=True)
     # A fallen wall may have no contacts left that could be broken, or have swayed twice as far as under the load alone.
     if _is_broken(run, state) or verdict == "collapse":
         return _slowly(run, criteria, observe, state.steps)
-    if held and verdict == "stable" and _has_slid(run, state):
+    if verdict == "stable" and _has_slid(run, state):
         return _slowly(run, criteria, observe, state.steps, SUDDEN_PART_NO_SLIP)
-    for _ in range(CALM if unseen else 0):  # observers take a wall as at rest after this many checks at rest
+    for _ in range(CALM):  # observers take a wall as at rest after this many checks at rest
         observe(run, state, 0.0)
     return UnderDeadLoad(state, verdict, state.steps, state.steps)
 
@@ -87,12 +79,6 @@ def fall_under_dead_load(law: KernelLaw, bears: Callable[[], bool]) -> tuple[Lit
     if not law.can_break and bears():
         return "undecided", "collapses under its dead load as it is applied, although forces exist that balance it"
     return "infeasible", "collapses under its dead load"
-
-
-def keeps_damage(run: Run) -> bool:
-    """Whether a sudden load may permanently damage or crush joints that a slowly applied one would not."""
-    law = run.interface.law.law
-    return law.damage is not None or PLASTIC_CLOSURE in law.history
 
 
 def _is_broken(run: Run, state: State) -> bool:

@@ -119,7 +119,7 @@ def _followed(
     traverses = list[Traverse]()
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
-        loaded = put_on_dead_load(resting, wall.criteria, observe, is_led=scene.is_led)
+        loaded = put_on_dead_load(resting, wall.criteria, observe)
         state, verdict = loaded.state, loaded.verdict
         outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":

@@ -66,21 +66,35 @@ def test_search_ends_with_collapse_on_both_sides_of_undecided_load() -> None:
     assert found.upper - found.lower <= 0.005 * found.upper
 
 
-def test_message_names_unrestrained_block_that_drifts_away() -> None:
-    """Two weightless blocks side by side: all loads act on one, which pushes the other off its bed joint."""
-    live = {"kind": "point", "at": [0.24, 0.2], "force": [18.0, -6.0]}
-    dead = {"kind": "point", "at": [0.48, 0.2], "force": [-6.0, -220.0]}
-    scene = courses(
+def two_side_by_side(live: list[float], dead: list[float], stiffness: float, at: float = 0.24) -> Scene:
+    """Two weightless blocks side by side on a course: all loads act on one, which may push the other one away."""
+    return courses(
         [[1, 1, 1], [-0.5, 1, 1, -0.5]],
         width=0.4,
         height=0.1,
-        joint={"friction": 0.3, "normal_stiffness": 1.4e7, "shear_stiffness": 1.4e7},
-        load={"gravity": 0.0, "live": live, "dead": [dead]},
+        joint={"friction": 0.3, "normal_stiffness": stiffness, "shear_stiffness": stiffness},
+        load={
+            "gravity": 0.0,
+            "live": {"kind": "point", "at": [at, 0.2], "force": live},
+            "dead": [{"kind": "point", "at": [0.48, 0.2], "force": dead}],
+        },
     )
-    outcome = dem_dynamic(scene)
+
+
+def test_message_names_unrestrained_block_that_drifts_away() -> None:
+    outcome = dem_dynamic(two_side_by_side([60.0, 0.0], [6.0, -220.0], 1.4e6, at=0.4))
     assert outcome.status == "undecided"
     assert "it carried every load tried" in outcome.message
     assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
+
+
+def test_sudden_dead_load_does_not_throw_an_unrestrained_block() -> None:
+    """18 λ - 6 = 0.3 (220 + 6 λ): the loaded block slides. Thrown by a sudden load, its neighbour drifted on before."""
+    outcome = dem_dynamic(two_side_by_side([18.0, -6.0], [-6.0, -220.0], 1.4e7))
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.upper * 0.99 < outcome.lower <= 72 / 16.2 <= outcome.upper
 
 
 @pytest.mark.parametrize("height", [0.02, 0.002])
