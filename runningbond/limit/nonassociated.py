@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from runningbond.results import Outcome, collapse_state
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
@@ -19,7 +21,7 @@ from .canonical import Order, canonical_order
 from .certificates import TOUCHING, Certificate, certified_loads, certify, least_multiplier
 from .coarse import COARSE_POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
-from .force_program import ForceSolution, coulomb, solve_forces
+from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .large import search_large, takes_one_start
 from .moving_support import JAMMED, bridged_message, is_bridged, reaction_note
 from .search import STARTS, search
@@ -72,10 +74,13 @@ def limit_nonassociated(
 
     Notes
     -----
-    A wall whose normal forces balance any multiple of the live load is proved to be ``unbounded``: no mechanism without
-    interpenetration gains power from the load. If that balance needs friction, Coulomb's law allows rest at every
-    multiple, but perhaps also a collapse, driven by other forces. Such a wall is ``unbounded`` if no collapse was
-    certified and friction grew with the load in every program; the message states what is not proved.
+    A wall is proved to be ``unbounded`` if normal forces, and the cohesion left at the tensile strength, balance the
+    dead load, and normal forces any multiple of the live load: no mechanism without interpenetration gains power from
+    these loads. If the dead load needs friction, as that of a stone wedged between two others, it may bring the wall
+    down whatever the live load is, and the outcome is ``undecided``. If the balance of the live load needs friction,
+    Coulomb's law allows rest at every multiple, but perhaps also a collapse, driven by other forces. Such a wall is
+    ``unbounded`` if no collapse was certified and friction grew with the load in every program; the message states what
+    is not proved.
     """
     check_scene(scene)
     start = time.perf_counter()
@@ -262,12 +267,22 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
     return replace(outcome, status="unbounded", message=message)
 
 
+def _rests_without_friction(system: Equilibrium) -> bool:
+    """Whether normal forces, and the cohesion left at the tensile strength, balance the dead load."""
+    forces = frozen_friction(system.strength, np.zeros(len(system.points)))
+    return solve_forces(system, forces, "zero").status == "optimal"
+
+
 def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bounds: list[float] | None) -> Outcome:
     """Outcome of a wall without a certified collapse; the associated load bounds it if its `bounds` are known."""
     programs = f"no collapse certified from {_effort(result)}{_stopped(result)}"
+    if result.frictionless and system.has_support:
+        return replace(outcome, status="unbounded", message=JAMMED)
     if result.frictionless:
-        message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"
-        return replace(outcome, status="unbounded", message=message)
+        message = "normal forces carry any multiple of the live load"
+        if _rests_without_friction(system):
+            return replace(outcome, status="unbounded", message=f"self-locking: {message}")
+        return replace(outcome, message=f"{programs}; {message}, but the dead load needs friction, which may give way")
     if bounds and system.has_support:
         if is_bridged(system, bounds[0], dilates=False):
             return _bridged(outcome, system)

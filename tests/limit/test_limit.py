@@ -608,6 +608,31 @@ def test_message_of_wall_that_locks_by_friction(length: float, force: list[float
     assert "which does not exclude one" in outcome.message
 
 
+@pytest.mark.parametrize(
+    ("joint", "status"), [({}, "undecided"), ({"cohesion": 1e5, "tensile_strength": 0.0}, "unbounded")]
+)
+def test_stone_between_walls_is_not_held_by_pushing_it_aside(joint: dict[str, float], status: str) -> None:
+    """Normal forces carry any push, but the weight hangs on friction, which nothing calls up, or on cohesion.
+
+    With λ times its weight to the right the dry stone can slip down for all λ up to 1 / 0.6: then the wall on its left
+    presses by (1 / 0.6 - λ) / 2 and that on its right by (1 / 0.6 + λ) / 2 of the weight.
+    """
+    ground = [rectangle(-1, -1, 1, 1.4).tolist(), rectangle(0.4, -1, 1, 1.4).tolist()]
+    scene = scene_from_dict(
+        {
+            "wall": {"outlines": [rectangle(0, 0, 0.4, 0.4).tolist()], "ground": ground, "thickness": 0.2},
+            "block": {"density": 2000.0},
+            "joint": {"friction": 0.6, **joint},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+        }
+    )
+    outcome = limit_nonassociated(scene)
+    assert outcome.status == status, outcome.message
+    assert "normal forces carry any multiple of the live load" in outcome.message
+    assert ("the dead load needs friction, which may give way" in outcome.message) == (not joint)
+
+
 def test_frictionless_wall_carries_no_lateral_load() -> None:
     zero = multiplier(panel(joint__friction=0.0))
     assert zero == pytest.approx(0, abs=1e-12)
