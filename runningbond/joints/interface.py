@@ -42,6 +42,9 @@ CURVE = 9
 
 STIFFEST = CURVE + 4
 
+CAP = CURVE + 5
+"""Index of the compressive strength, the cap's first constant."""
+
 SOFTENS_CRUSHED = CURVE + 8
 """Index of 1 / κ_s of the cap: zero for a cap that keeps its strength however far it is crushed."""
 
@@ -228,6 +231,7 @@ INTERFACE = Law(
     stored_when_seated,
     damage="damage",
     stiffest=STIFFEST,
+    cap=CAP,
     closed=closed_under,
     weakens=weakens,
 )

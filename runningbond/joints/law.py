@@ -63,6 +63,8 @@ class Law:
         static models refuse a law without one.
     stiffest
         Index of the constant that is the largest normal stiffness [Pa/m], which determines time steps.
+    cap
+        Index of the constant that is the compressive strength; None for laws without one.
     closed
         ``closed(points, pressure)``: elastic closure ``(np,)`` [m] and tangent normal stiffness ``(np,)`` [Pa/m] under
         a pressure [Pa], not negative, for a law with a `PLASTIC_CLOSURE`; None for other laws, whose stiffness is k_n.
@@ -80,6 +82,7 @@ class Law:
     cone: Callable[[JointMaterial], tuple[float, float, float]] = field(default=truncated_cone, compare=False)
     response: Callable[[PointStrength, Array, Array], PointLaw] | None = field(default=None, compare=False)
     stiffest: int = 0
+    cap: int | None = None
     closed: Callable[["KernelLaw", Array], tuple[Array, Array]] | None = None
     weakens: Callable[[Array], Mask] | None = None
 
@@ -164,6 +167,11 @@ class KernelLaw:
     def tension(self) -> Array:
         """Largest tension of each point, ``(np,)`` [Pa]."""
         return self.of_points(2)
+
+    @property
+    def compressive_strength(self) -> Array:
+        """Compressive strength of each point, ``(np,)`` [Pa]; infinite without one."""
+        return np.full(self.points, np.inf) if self.law.cap is None else self.of_points(self.law.cap)
 
     @property
     def can_break(self) -> bool:

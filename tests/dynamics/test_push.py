@@ -398,6 +398,21 @@ def test_frictionless_block_collapses_at_zero_load() -> None:
     assert outcome.multiplier == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.parametrize(("times", "is_told"), [(100.0, True), (400.0, False)])
+def test_toe_near_its_strength_is_told(times: float, is_told: bool) -> None:
+    """All weight on an end point, which stands for a 72nd of the joint: λ = b / h. A continuous toe is W / f t wide.
+
+    The strength is a multiple of the mean pressure. The load is too large by its inverse, at most 1 / 72.
+    """
+    strength = times * 9.81 * float(block(WIDTH, HEIGHT).mass[0]) / WIDTH / 0.12
+    joint = {"joint__friction": 1.4, "joint__compressive_strength": strength, "joint__cap_shear": 0.0}
+    scene = block(WIDTH, HEIGHT, **joint, load__live={"kind": "lateral"})
+    outcome = dem_dynamic(scene, 0.002)
+    assert outcome.multiplier == pytest.approx(WIDTH / HEIGHT, rel=0.003)
+    assert limit(scene).multiplier == pytest.approx((1 - 1 / times) * WIDTH / HEIGHT, rel=1e-4)
+    assert ("joints near their compressive strength carry bending at points" in outcome.message) == is_told
+
+
 def test_block_with_crushing_toe_pushed_at_point() -> None:
     """The dead load is applied slowly. The toe is at its full strength f: λ F h = W (b − W / f t) / 2."""
     at, crushing = {"kind": "point", "at": [0.0, HEIGHT], "force": [1.0, 0.0]}, 6000.0
