@@ -115,7 +115,6 @@ class MotionRecorder(SeriesRecorder):
         self._wall: ModalWall | None = None
         self._multiplier = np.nan
         self._calm = 0
-        self._held: State | None = None
         self._moments: list[tuple[int, Frame]] = []
         self._stride = 1
         self._fall: tuple[float, list[tuple[int, Frame]]] = (np.nan, [])
@@ -130,9 +129,6 @@ class MotionRecorder(SeriesRecorder):
             self._led = state.steps
         elif multiplier != self._multiplier:
             self._next_load(multiplier)
-        elif state is not self._held:  # the same load once more: the dead load, applied slowly
-            self._moments, self._stride = [], 1
-        self._held = state
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
         if run.is_driven or self._calm == CALM:
             self.keep(self._frame(run, state, multiplier))

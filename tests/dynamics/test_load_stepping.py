@@ -66,7 +66,7 @@ def test_search_ends_with_collapse_on_both_sides_of_undecided_load() -> None:
     assert found.upper - found.lower <= 0.005 * found.upper
 
 
-def two_side_by_side(live: list[float], dead: list[float], stiffness: float, at: float = 0.24) -> Scene:
+def two_side_by_side(live: list[float], dead: list[float], stiffness: float) -> Scene:
     """Two weightless blocks side by side on a course: all loads act on one, which may push the other one away."""
     return courses(
         [[1, 1, 1], [-0.5, 1, 1, -0.5]],
@@ -75,14 +75,14 @@ def two_side_by_side(live: list[float], dead: list[float], stiffness: float, at:
         joint={"friction": 0.3, "normal_stiffness": stiffness, "shear_stiffness": stiffness},
         load={
             "gravity": 0.0,
-            "live": {"kind": "point", "at": [at, 0.2], "force": live},
+            "live": {"kind": "point", "at": [0.24, 0.2], "force": live},
             "dead": [{"kind": "point", "at": [0.48, 0.2], "force": dead}],
         },
     )
 
 
 def test_message_names_unrestrained_block_that_drifts_away() -> None:
-    outcome = dem_dynamic(two_side_by_side([60.0, 0.0], [6.0, -220.0], 1.4e6, at=0.4))
+    outcome = dem_dynamic(two_side_by_side([60.0, 0.0], [0.0, -220.0], 1.4e5))
     assert outcome.status == "undecided"
     assert "it carried every load tried" in outcome.message
     assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
@@ -95,6 +95,21 @@ def test_sudden_dead_load_does_not_throw_an_unrestrained_block() -> None:
     assert outcome.lower is not None
     assert outcome.upper is not None
     assert outcome.upper * 0.99 < outcome.lower <= 72 / 16.2 <= outcome.upper
+
+
+def test_weightless_block_beside_a_tilting_one_is_not_thrown() -> None:
+    """The dead load tilts its block, which slides at λ = 70, against a weightless one. Thrown, it fell at 1e-4."""
+    live = {"kind": "point", "at": [0.0, 0.2], "force": [117.72, 0.0]}
+    dead = {"kind": "point", "at": [0.2, 0.2], "force": [0.0, -23544.0]}
+    scene = courses(
+        [[1, 1], [0.5, 1, 0.5]],
+        width=0.3,
+        height=0.1,
+        wall__thickness=0.2,
+        joint={"friction": 0.35, "normal_stiffness": 2.16e8, "shear_stiffness": 8.6e7},
+        load={"gravity": 0.0, "live": live, "dead": [dead]},
+    )
+    assert dem_dynamic(scene).multiplier == pytest.approx(70.0, rel=0.01)
 
 
 @pytest.mark.parametrize("height", [0.02, 0.002])
