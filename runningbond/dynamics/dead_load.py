@@ -123,10 +123,7 @@ def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: 
     _tighten(run, state, (part - 1.0) * system.ties.slack)
     verdict = settle(growing, state, part, criteria, sudden=True)
     rest = state.steps
-    if verdict == "collapse":  # observers are to see it fall under all of its load
-        state, before = State.at_rest(system), before + rest
-        verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
-    elif verdict == "stable":
+    if verdict == "stable":
         for before_turn, share in pairwise(shares.tolist()):
             ramp(growing, state, before_turn, share, max(1, GROWTH_TIMES * rest // (len(shares) - 1)))
             _tighten(run, state, (share - before_turn) * system.ties.slack)
