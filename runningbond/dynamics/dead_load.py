@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from runningbond.joints.law import FRICTION_WORK, PLASTIC_CLOSURE, KernelLaw
+from runningbond.joints.law import PLASTIC_CLOSURE, KernelLaw
 from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, settle
@@ -30,13 +30,6 @@ that break are better off after a quarter: what is left grows in a longer time.
 
 SLIP_WORK = 1e-3
 """Fraction of the work of dead load and preloads above which friction work is more than rounding: joints have slid."""
-
-SLIP_WORK_AT_POINT = 0.1
-"""Friction work at a joint point above which it has slid, as a multiple of the energy stored there.
-
-The point counts as bearing at least the weight of the lightest block. Heavy parts of a wall do not hide that light ones
-slide.
-"""
 
 TIGHTENINGS = 200
 """Number of increments in which ties are tightened while the remaining load grows."""
@@ -104,14 +97,7 @@ def _is_broken(run: Run, state: State) -> bool:
 
 def _has_slid(run: Run, state: State) -> bool:
     ledger = run.ledger(state)
-    if ledger.friction > SLIP_WORK * (ledger.external - min(ledger.ties, 0.0)):  # preloads do work as well
-        return True
-    interface, (opening, _, normal, tangential) = run.interface_of(state), run.tractions(state)
-    law, borne = interface.law, interface.area > 0
-    weight = float(run.system.force_unit[run.system.rigid[:, :2]].min())
-    least = (weight / interface.area[borne]) ** 2 / (2 * law.normal_stiffness[borne])
-    stored = np.maximum(law.energy(opening, normal, tangential, state.history)[borne], least)
-    return bool((state.history[FRICTION_WORK, borne] > SLIP_WORK_AT_POINT * stored).any())
+    return ledger.friction > SLIP_WORK * (ledger.external - min(ledger.ties, 0.0))  # preloads do work as well
 
 
 def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: float) -> UnderDeadLoad:
