@@ -41,9 +41,9 @@ Cracks: TypeAlias = Literal["joints", "blocks"]
 CONGRUENT = 1e-6
 """Rounding unit of triangle corners when congruent triangles are detected, relative to the smallest triangle's size."""
 
-
 STRENGTH = "friction", "cohesion", "tensile_strength", "fracture_energy_1", "fracture_energy_2", "softening"
 CRUSHING = "compressive_strength", "cap_shear", "compressive_fracture_energy", "peak_closure"
+"""Fields of a joint's material that describe its failure in tension and shear, and in compression."""
 
 
 @dataclass(frozen=True, eq=False)

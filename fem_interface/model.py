@@ -214,7 +214,7 @@ def _note(scene: Scene, wall: ModalWall, system: BlockSystem, cracks: Cracks, ce
     if cracks == "blocks" and (more := added_compliance(wall.pieces)) > REPORTED_COMPLIANCE:
         softer = f"inner joints make blocks up to {more:.0%} softer: a larger inner_joint.normal_stiffness would not"
     no_path = "no crack passes level through blocks one cell high: cells = 2 would let it"
-    limited = "joints stronger than inner_joint have the strength of the stone beside them"
+    limited = "joints stronger than inner_joint have the tensile strength of the stone beside them"
     told = {softer: True, no_path: cells == 1, limited: has_weaker_stone(scene)} if cracks == "blocks" else {}
     return joined(masses, *(line for line, holds in told.items() if holds))
 

@@ -503,7 +503,7 @@ def test_stones_crack_right_beside_stronger_joints(cells: int) -> None:
     outcome = fem(scene, cracks="blocks", cells=cells)
     exact = 1e5 * float(scene.thickness) * 0.12**2 / 2 / 0.24
     assert outcome.multiplier == pytest.approx(exact, rel=0.01)
-    assert "strength of the stone beside them" in outcome.message
+    assert "tensile strength of the stone beside them" in outcome.message
 
 
 def cohesive() -> st.SearchStrategy[JointMaterial]:
