@@ -61,7 +61,7 @@ def test_rest_threshold_below_rounding_is_never_met() -> None:
 
 
 def test_collapse_displacement_too_small_takes_settlement_for_collapse() -> None:
-    assert search(W1, FAR, 1e-8)["answer"] == "infeasible"
+    assert search(W1, FAR, 1e-9)["answer"] == "infeasible"
 
 
 @pytest.mark.long
