@@ -179,10 +179,10 @@ def crushing_note(run: Run, state: State) -> str:
     Of nine points an end point stands for 1/72 of a joint. Where it bears all, a continuous joint has a toe of that
     share of the joint times the pressure over the strength, whose resultant lies half of this farther inwards.
     """
-    pressure, strength = -run.tractions(state)[2], run.interface_of(state).law.compressive_strength
-    if run.interface.law.crushed(state.history).any():
+    law, (_, _, normal, _) = run.interface_of(state).law, run.tractions(state)
+    if law.crushed(state.history).any():
         joints = "crushed joints"
-    elif (pressure > NEARLY_CRUSHED * strength).any():
+    elif (-normal > NEARLY_CRUSHED * law.compressive_strength).any():
         joints = "joints near their compressive strength"
     else:
         return ""

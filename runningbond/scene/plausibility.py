@@ -135,8 +135,10 @@ def _materials(scene: Scene) -> Iterator[str]:
 def _stones(scene: Scene) -> Iterator[str]:
     """Warn about joints that bear more tension than stones: in most models these crack on their axes only."""
     stone = scene.inner_joint
-    for material in scene.materials_of_joints if stone else ():
-        if stone and material.tension > stone.tension:
+    if stone is None:
+        return
+    for material in scene.materials_of_joints:
+        if material.tension > stone.tension:
             more = f"{material.tension:.4g} Pa is above that of inner_joint, {stone.tension:.4g} Pa"
             only = 'only fem with cracks = "blocks" lets stones crack right beside it'
             yield f"{table_of(material)}: its tensile strength of {more}; {only}"

@@ -273,7 +273,7 @@ def test_fixed_height_beam_keeps_thrust_of_slow_dead_load(courses: Any, pressed:
 def test_share_on_a_settlement_is_that_after_a_slowly_applied_dead_load(
     pattern: list[list[float]], height: float, friction: float, support: str, by: list[float], model: Any
 ) -> None:
-    """A load applied at once made joints slide, and the share where the settlement ends was a sixth off."""
+    """A load applied at once made joints slide, and the share where the settlement ends was another one."""
     corner = {"kind": "point", "at": [0.6, height * len(pattern)], "force": [0.0, -1000.0]}
     scene = courses(
         pattern,
@@ -290,7 +290,7 @@ def test_share_on_a_settlement_is_that_after_a_slowly_applied_dead_load(
 
 
 def test_load_from_rest_starts_after_a_slowly_applied_dead_load() -> None:
-    """Heavy stones on rough beds: after a sudden dead load `dem-dynamic` found 3 % more than `dem-static`."""
+    """Heavy stones on rough beds: after a sudden dead load `dem-dynamic` found more than `dem-static`."""
     scene = courses(
         [[0.5, 1, 1, 1, 0.5], [1, 1, 1, 1], [0.5, 1, 1, 1, 0.5], [1, 1, 1, 1]],
         0.3,

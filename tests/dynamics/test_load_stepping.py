@@ -98,7 +98,7 @@ def test_sudden_dead_load_does_not_throw_an_unrestrained_block() -> None:
 
 
 def test_weightless_block_beside_a_tilting_one_is_not_thrown() -> None:
-    """The dead load tilts its block, which slides at λ = 70, against a weightless one. Thrown, it fell at 1e-4."""
+    """The dead load tilts its block, which slides at λ = 70, against a weightless one, which it threw."""
     live = {"kind": "point", "at": [0.0, 0.2], "force": [117.72, 0.0]}
     dead = {"kind": "point", "at": [0.2, 0.2], "force": [0.0, -23544.0]}
     scene = courses(
