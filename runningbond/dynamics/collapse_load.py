@@ -344,7 +344,8 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
 def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
     """Curve of the states at rest, then of the fall: control displacement since the first rest, and multiplier.
 
-    Also their reactions and works.
+    Also their reactions and works. Where the load was applied at once, its work is that of slow growth: a load at once
+    does twice the work, half of which damping takes.
     """
     states = result.rests
     if result.fallen is not None and result.upper is not None:
@@ -352,7 +353,10 @@ def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dic
     start = states[0][1].motion
     curve = np.array([(run.system.control @ (state.motion - start), multiplier) for multiplier, state in states])
     dead = np.array([run.dead_work(state) for _, state in states])
-    works = np.column_stack([dead, [state.external for _, state in states] - dead])
+    live = np.array([run.system.live @ state.motion for _, state in states])
+    steps = np.diff(curve[: result.at_once + 1, 1]) * np.diff(live[: result.at_once + 1]) / 2
+    extra = np.concatenate([[0.0], np.cumsum(steps), np.full(len(states), steps.sum())])[: len(states)]
+    works = np.column_stack([dead, [state.external for _, state in states] - dead - extra])
     forces = [np.column_stack(run.forces(state)) for _, state in states]
     ties = [run.system.ties.force(state.motion, state.stretch) for _, state in states]
     supports = Supports(scene, points, run.system.owner)

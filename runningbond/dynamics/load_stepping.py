@@ -58,6 +58,7 @@ class LoadSteps:
     fall_starts: list[Array] = field(default_factory=list)
     # every state at rest and its multiplier, in the order of loads
     rests: list[tuple[float, State]] = field(default_factory=list)
+    at_once: int = 0  # number of these after the first in which the load was applied at once to an elastic wall
     steps: int = 0  # steps taken, on every path
     interrupted: bool = False  # whether Ctrl-C ended it
     far: bool = False  # whether it ended because a body, at rest, had moved beyond the largest displacement
@@ -258,6 +259,7 @@ class _Search:
             if verdict != "stable" or not loaded.has_lost_nothing_since(borne):
                 break
             result.add(load, loaded, "stable", None)
+            result.at_once += 1
             for _ in range(CALM):  # observers take a wall as at rest after this many checks at rest
                 self.observe(run, loaded, load)
             softness = run.system.farthest(loaded.motion - dead.motion, criteria.collapse) / load

@@ -133,7 +133,10 @@ def _materials(scene: Scene) -> Iterator[str]:
 
 
 def _stones(scene: Scene) -> Iterator[str]:
-    """Warn about joints that bear more tension than stones: in most models these crack on their axes only."""
+    """Warn about joints that bear more tension than stones, which in most models crack on their axes only.
+
+    Also about named materials, such as a lintel's steel, whose blocks crack with the strength of stones.
+    """
     stone = scene.inner_joint
     if stone is None:
         return
@@ -142,6 +145,11 @@ def _stones(scene: Scene) -> Iterator[str]:
             more = f"{material.tension:.4g} Pa is above that of inner_joint, {stone.tension:.4g} Pa"
             only = 'only fem with cracks = "blocks" lets stones crack right beside it'
             yield f"{table_of(material)}: its tensile strength of {more}; {only}"
+    own = scene.material_of_block
+    for k in np.unique(own[scene.joints.block[scene.joints.inner]]):
+        if k and (own[scene.masonry] != k).any():
+            which = "its blocks, also lintels, may crack like all others, with the strength of inner_joint"
+            yield f"{table_of(scene.block_materials[k])}: {which}"
 
 
 def _friction(key: str, friction: float) -> Iterator[str]:

@@ -120,6 +120,22 @@ def test_works_of_loads_along_path(model: str) -> None:
     assert (np.diff(live) >= 0).all()
 
 
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
+def test_work_of_load_on_elastic_wall(model: str) -> None:
+    """It is half of the load times its displacement, also where models in motion apply the load at once.
+
+    That does twice the work, half of which damping takes.
+    """
+    glue = {"joint": {"friction": 0.6, "cohesion": 1e5} | STIFFNESS}
+    scene = panel(wall__length=0.48, wall__height=0.18, block__young=1e10, load=POINT, **glue)
+    outcome = run_model(model, scene, 0.3)
+    columns = outcome.curve_columns()
+    elastic = slice(1, 4)  # rests under the first loads
+    assert (columns[AT_REST][elastic] == 1).all()
+    half = columns["multiplier"][elastic] * columns["displacement"][elastic] * np.hypot(100, 30) / 2
+    assert columns[WORKS[1]][elastic] == pytest.approx(half, rel=2e-3)
+
+
 def test_path_is_stored(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder, outcome = tmp_path_factory.mktemp("path"), run_model("dem-static", wall("base"), 0.1)
     save_outcome(outcome, folder)

@@ -96,6 +96,11 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (stiff(shear_stiffness=4.0), "joint.shear_stiffness = 4: * is 4 N/mm³ meant", stiff(shear_stiffness=4e6)),
         (glued(1.9e5), "joint: its tensile strength of 2e+05 Pa is above * fem with cracks", glued(2e5)),
         ({"load__gravity": 981.0}, "load.gravity = 981: is not within 9.3 … 10.3 m/s²", 10.0),
+        (
+            glued(2e5) | {"materials": {"oak": {"density": 700.0}}} | FIRST,
+            "materials.oak: its blocks, also lintels, may crack like all others, with the strength of inner_joint",
+            OAK,
+        ),
         (scaled(1e3, 120.0), "wall.length = 1440: * is 1440 mm meant, which is 1.44 m?", scaled(10.0, 1.0)),
         (scaled(0.01, 0.001), "wall.length = 0.0144: is not within 0.05 … 200 m", scaled(0.1, 0.012)),
         ({"wall__thickness": 120.0}, "wall.thickness = 120: is odd for blocks of about 0.12 m; are 120 mm meant?", 3.0),
