@@ -1,7 +1,7 @@
 """What drives a wall from equilibrium to equilibrium, along a path of prescribed displacements."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -107,6 +107,10 @@ class StaticLead(ABC):
 
     def other_way(self, curve: Array) -> str:
         """Note on the largest reaction in the other direction; may be empty."""
+        return ""
+
+    def doubt(self, states: Sequence[StaticState], works: Array, tolerance: float) -> str:
+        """Note on an answer that may differ by more than its bracket, from works of the drive ``(n,)`` [J] so far."""
         return ""
 
     def has_come_free(self, state: StaticState) -> bool:

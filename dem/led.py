@@ -21,7 +21,7 @@ from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import joined, number
-from runningbond.results.reactions import COME_FREE
+from runningbond.results.reactions import COME_FREE, WORKS
 
 from .beam_drive import StaticBeamDrive
 from .climb import BUDGET_SPENT, NO_VERDICT
@@ -179,8 +179,9 @@ def _judge(
     so_far = replace(outcome, lower=None if falls else lower, upper=upper if falls else None)
     if traverse.stopped and not traverse.fell:
         return replace(so_far, message=f"no answer: {cut}; {what}")
+    doubt = lead.doubt(traverse.states, outcome.path[:, outcome.path_columns.index(WORKS[1])], tolerance)
     if not traverse.fell and lead.has_come_free(traverse.states[-1]):
-        return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
+        return replace(outcome, status="unbounded", message=joined(COME_FREE, what, doubt))
     room = tolerance - _spread(lead, [lower, upper])
     room = (room if room > 0 else tolerance) * max(upper, lead.least)
     left = 0.0 if traverse.fell else lead.growth_left(outcome.curve)
@@ -198,4 +199,4 @@ def _judge(
     if _spread(lead, answers[-2:]) > tolerance:
         return replace(outcome, message=f"no answer: other steps change it by more than the tolerance; {what}")
     fall = f"the wall falls at {at}, and the answer is that of its last rest" if traverse.fell else ""
-    return replace(outcome, status="collapse", multiplier=answers[-1], message=joined(what, fall))
+    return replace(outcome, status="collapse", multiplier=answers[-1], message=joined(what, fall, doubt))

@@ -1,11 +1,13 @@
 """Supports that settle along their path, from equilibrium to equilibrium."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
-from runningbond.dynamics.path_curve import LITTLE, SUPPORT_ANSWER, formed, shedding
+from runningbond.dynamics.path_curve import LITTLE, SUPPORT_ANSWER, formed, friction_note, shedding
 from runningbond.limit.kinematics import control_row
 from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.results import Supports
@@ -80,6 +82,15 @@ class StaticSettlement(StaticLead):
         """Note on a share that still changes, and whether it can only become smaller."""
         falls, changes = shedding(curve)
         return f"the support still {changes} where its settlement ends, it bears", falls
+
+    def doubt(self, states: Sequence[StaticState], works: Array, tolerance: float) -> str:
+        """Note on a share that depends on how joints slid."""
+        count, equations = len(states[0].force), self.system.equilibrium
+        slid = (np.abs(after.plastic_slip - before.plastic_slip)[:count] for before, after in pairwise(states))
+        shear = (np.abs(after.force[:, 1] + before.force[:, 1]) / 2 for before, after in pairwise(states))
+        friction = sum(float(each @ way) for each, way in zip(shear, slid, strict=True))
+        unit = equations.force_unit * self.system.length_unit
+        return friction_note(friction * unit, works, LITTLE * abs(self.joule), tolerance)
 
     def has_come_free(self, state: StaticState) -> bool:
         """Whether supports that move carry nothing."""

@@ -291,7 +291,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     least, most = _bracket(traverses)
     fell = traverse.verdict == "collapse"
     if not fell and lead.has_come_free(traverse.rows[-1]):
-        return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
+        message = joined(COME_FREE, what, lead.doubt(traverse, tolerance))
+        return replace(outcome, status="unbounded", message=message)
     spread, left = _spread(lead, traverses), lead.growth_left(traverse)
     lower = least - traverse.drag
     outcome = replace(outcome, lower=lower, upper=most + left)

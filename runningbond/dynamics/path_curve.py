@@ -36,6 +36,27 @@ OVERSHOOT = 0.05
 """Displacement to the other side, relative to the largest one, up to which a path only returns to its start."""
 
 
+SLIDES = "joints slide: another path, or forces at other points along the joints, may leave another share"
+"""Note on a share that friction leaves to the path: its bracket only says how closely this one was followed."""
+
+
+def friction_note(friction: float, works: Array, least: float, tolerance: float) -> str:
+    """Note on a share of the dead load that depends on how joints slid, else empty.
+
+    Parameters
+    ----------
+    friction
+        Work of friction along the path [J].
+    works : (n,) float
+        Work of the supports up to each row of the path [J].
+    least
+        Work [J] below which that of the supports need not be accurate relative to itself.
+    tolerance
+        Part of the work of the supports up to which the work of friction makes no difference.
+    """
+    return SLIDES if friction > tolerance * max(float(np.ptp(works)), least) else ""
+
+
 def goes_both_ways(goals: Array) -> bool:
     """Whether a path from zero through goals ``(n,)``, one after the other, goes to both sides.
 

@@ -20,7 +20,7 @@ from runningbond.scene import Array, Scene, check_scene
 from .crushed import beyond_note, crushed, crushing_note, without_crushing
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
-from .moving_support import JAMMED, support_verdict
+from .moving_support import HOLDS_SUPPORT, support_verdict
 from .proved import CLOSE, STOP, fall_at_rest, is_large, proved, resting_forces, tolerance_of
 from .repair import ROUNDING
 
@@ -338,7 +338,7 @@ def judge(state: LimitState) -> tuple[Status, str]:
         return "undecided", INTERRUPTED
     if state.self_locking or _balances_any_multiple(system):
         if system.has_support:
-            return "unbounded", f"{JAMMED}, with associated joints; true friction may give way"
+            return "unbounded", f"self-locking: {HOLDS_SUPPORT}, with associated joints; true friction may give way"
         message = "self-locking: admissible forces balance any multiple of the live load"
         return "unbounded", f"{message}, with associated joints; true friction may collapse"
     if program == "infeasible":  # at λ = 0 it has the same forces as the program of the dead load

@@ -20,7 +20,7 @@ ZERO_SHARE = 1e-6
 
 BRIDGED = "it bridges the support, without which forces balance the dead load"
 
-JAMMED = "self-locking: the wall holds the support against any force that drives it"
+HOLDS_SUPPORT = "the wall holds the support against any force that drives it"
 
 
 def may_leave(system: Equilibrium, *, dilates: bool) -> bool:

@@ -23,7 +23,7 @@ from .coarse import COARSE_POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .large import search_large, takes_one_start
-from .moving_support import JAMMED, bridged_message, is_bridged, reaction_note
+from .moving_support import HOLDS_SUPPORT, bridged_message, is_bridged, reaction_note
 from .search import STARTS, search
 from .search_log import Observer, SearchLog
 
@@ -268,18 +268,19 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
 
 
 def _rests_without_friction(system: Equilibrium) -> bool:
-    """Whether normal forces, and the cohesion left at the tensile strength, balance the dead load."""
+    """Whether normal forces, and the cohesion left at the tensile strength, balance the dead load.
+
+    A moving support does not move yet, and may carry any part of it.
+    """
     forces = frozen_friction(system.strength, np.zeros(len(system.points)))
-    return solve_forces(system, forces, "zero").status == "optimal"
+    return solve_forces(system.under_dead_load(), forces, "zero").status == "optimal"
 
 
 def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bounds: list[float] | None) -> Outcome:
     """Outcome of a wall without a certified collapse; the associated load bounds it if its `bounds` are known."""
     programs = f"no collapse certified from {_effort(result)}{_stopped(result)}"
-    if result.frictionless and system.has_support:
-        return replace(outcome, status="unbounded", message=JAMMED)
     if result.frictionless:
-        message = "normal forces carry any multiple of the live load"
+        message = HOLDS_SUPPORT if system.has_support else "normal forces carry any multiple of the live load"
         if _rests_without_friction(system):
             return replace(outcome, status="unbounded", message=f"self-locking: {message}")
         return replace(outcome, message=f"{programs}; {message}, but the dead load needs friction, which may give way")

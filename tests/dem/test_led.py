@@ -356,6 +356,43 @@ def test_settlement_of_half_a_wall_and_of_its_mirror_agree() -> None:
     assert 0 < right.multiplier < 0.5
 
 
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic])
+@pytest.mark.parametrize("slides", [False, True])
+def test_share_that_hangs_on_friction_is_said_to_depend_on_the_path(
+    model: Callable[[Scene], Outcome], slides: bool
+) -> None:
+    """A lintel that rocks on two edges, and half of a wall that slides down along the other half."""
+    rows: list[list[float]] = [[0.5, 1, 1, 0.5], [1, 1, 1]] * 3
+    scene = mortared(rows, [[0.6, -9], [9, 0]]) if slides else wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -0.01)))
+    outcome = model(scene)
+    assert outcome.status == "collapse", outcome.message
+    assert ("joints slide: another path" in outcome.message) == slides
+
+
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic])
+def test_wall_that_bridges_its_support_after_sliding_is_said_to_depend_on_the_path(
+    model: Callable[[Scene], Outcome],
+) -> None:
+    """A stone that leans on a plate with three times its weight hangs there by friction as the ground sinks."""
+    stone = Wall.outlines(
+        [rectangle(0, 0, 1, 1)],
+        [rectangle(-1, 0, 1, 1), rectangle(0, -1, 1, 1)],
+        thickness=0.1,
+        density=2000.0,
+        friction=0.8,
+        normal_stiffness=1e9,
+        shear_stiffness=4e8,
+        load={
+            "gravity": 9.81,
+            "dead": {"kind": "body", "acceleration": [-29.43, 0.0]},
+            "live": {"kind": "settlement", "box": [[0, -2], [1, 1e-4]], "by": [0, -0.001]},
+        },
+    )
+    outcome = model(stone.scene)
+    assert outcome.status == "unbounded", outcome.message
+    assert "joints slide: another path" in outcome.message
+
+
 # --- undecided results and refusals --------------------------------------------------------------------------
 
 

@@ -633,6 +633,27 @@ def test_stone_between_walls_is_not_held_by_pushing_it_aside(joint: dict[str, fl
     assert ("the dead load needs friction, which may give way" in outcome.message) == (not joint)
 
 
+@pytest.mark.parametrize("hangs", [False, True])
+def test_support_that_locks_proves_nothing_of_a_stone_that_hangs_on_friction(hangs: bool) -> None:
+    """A plate is driven against a stone that leans on another plate; a second stone hangs between two plates."""
+    stones = [rectangle(0, 0, 1, 1), rectangle(2, 0, 1, 1)]
+    grounds = [rectangle(-1, 0, 1, 1), rectangle(0, -1, 1, 1), rectangle(1, -1, 1, 2), rectangle(3, -1, 1, 2)]
+    outlines = {"outlines": [each.tolist() for each in stones[: 1 + hangs]], "ground": [g.tolist() for g in grounds]}
+    scene = scene_from_dict(
+        {
+            "wall": {**outlines, "thickness": 0.2},
+            "block": {"density": 2000.0},
+            "joint": {"friction": 0.5},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "live": {"kind": "settlement", "box": [[-2, -2], [0, 2]], "by": [0.001, 0.0]}},
+        }
+    )
+    outcome = limit_nonassociated(scene)
+    assert outcome.status == ("undecided" if hangs else "unbounded"), outcome.message
+    assert "the wall holds the support against any force that drives it" in outcome.message
+    assert ("the dead load needs friction, which may give way" in outcome.message) == hangs
+
+
 def test_frictionless_wall_carries_no_lateral_load() -> None:
     zero = multiplier(panel(joint__friction=0.0))
     assert zero == pytest.approx(0, abs=1e-12)
