@@ -130,7 +130,7 @@ def _collapse(
         return _uncertified(outcome, result, cut, _bounds(state) if bounded else None)
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
     if cut.has_support and is_bridged(cut, loads[-1][1], dilates=False):
-        return _bridged(outcome, cut)
+        return _bridged(outcome, result, cut)
     lowest, highest = proved[0], max(proved, key=lambda each: each.most.multiplier)
     least, multiplier, far = lowest.least, cut.load(lowest.least.multiplier), cut.load(highest.most.multiplier)
     message = _message(loads, result, tolerance, falling=cut.has_support)
@@ -261,9 +261,10 @@ def _stopped(result: SearchLog) -> str:
     return ", interrupted" if result.interrupted else ""
 
 
-def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
+def _bridged(outcome: Outcome, result: SearchLog, system: Equilibrium) -> Outcome:
     """Outcome of a wall that bridges its moving support."""
-    message = bridged_message(system, "with friction that may come to rest so")
+    searched = f"no larger share was certified from {_effort(result)}{_stopped(result)}, which does not exclude one"
+    message = bridged_message(system, f"with friction that may come to rest so; {searched}")
     return replace(outcome, status="unbounded", message=message)
 
 
@@ -286,7 +287,7 @@ def _uncertified(outcome: Outcome, result: SearchLog, system: Equilibrium, bound
         return replace(outcome, message=f"{programs}; {message}, but the dead load needs friction, which may give way")
     if bounds and system.has_support:
         if is_bridged(system, bounds[0], dilates=False):
-            return _bridged(outcome, system)
+            return _bridged(outcome, result, system)
         return replace(outcome, lower=bounds[0], message=f"{programs}; lower is the associated bound")
     if bounds:
         return replace(outcome, upper=bounds[1], message=f"{programs}; upper is the associated bound")
