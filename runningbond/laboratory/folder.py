@@ -15,6 +15,7 @@ from matplotlib.image import imread
 from runningbond.scene import Array, SceneError
 
 from .measured import CYCLIC, MONOTONIC, NOISE, MeasuredWall
+from .scores import LEAST_DISSIPATED, loops
 from .table_row import MINUS, NAME, NOTHING, TableRow
 
 DATA = Path(__file__).parent / "data"
@@ -205,8 +206,11 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
     if wall.is_cyclic and min(wall.reach) > NOISE * max(wall.reach):
         wall = replace(wall, curve=_from_rest(curve))
+        _check_cycles(wall)
+    elif _ends_at_rest(curve):
+        wall = replace(wall, curve=curve[::-1], is_reversed=True)
     if _is_pushed_left(wall):
-        wall = replace(wall, curve=-curve, is_turned=True)
+        wall = replace(wall, curve=-wall.curve, is_turned=True)
     return replace(wall, peaks=_peaks(wall, *printed))
 
 
@@ -240,14 +244,54 @@ def _is_pushed_left(wall: MeasuredWall) -> bool:
     return left * NOISE > right or (left > right and not wall.is_cyclic)
 
 
+def _ends_at_rest(curve: Array) -> bool:
+    """Whether a record of a push to one side starts where the wall was pushed farthest, and leads to rest."""
+    moved = np.abs(curve[~np.isnan(curve[:, 0]), 0])
+    return bool(len(moved) and moved[0] > (1 - NOISE) * moved.max() and moved[-1] < NOISE * moved.max())
+
+
 def _from_rest(curve: Array) -> Array:
-    """A curve to both sides, as two parts that go outward from rest if it is an envelope from one side to the other."""
+    """A curve to both sides; if it is an envelope, as two parts that go outward from rest.
+
+    An envelope is a record without unloading: its forces are to the sides of its displacements, and its points to each
+    side only go outward, or only inward from where they do not start at rest. The side of its first point comes first,
+    but if it leads from one side straight to the other, the positive one.
+    """
     known = curve[~np.isnan(curve[:, 0])]
-    known = known if known[0, 0] < known[-1, 0] else known[::-1]
     moved, force = known.T
-    if (np.diff(moved) < 0).any() or (moved * force < 0).any():
+    if (moved * force < 0).any():
         return curve
-    return np.concatenate([known[moved >= 0], np.full((1, 2), np.nan), known[moved <= 0][::-1]])
+    parts = list[Array]()
+    for own in (curve[:, 0] > 0, curve[:, 0] < 0):
+        side, first = curve[own], int(np.argmax(own))
+        is_from_rest = first > 0 and curve[first - 1, 0] == 0
+        if abs(side[0, 0]) > abs(side[-1, 0]) and not is_from_rest:
+            side = side[::-1]
+        if (np.diff(np.abs(side[:, 0])) < 0).any():
+            return curve
+        parts.append(side)
+    is_straight = (np.diff(moved) >= 0).all() or (np.diff(moved) <= 0).all()
+    if not is_straight and moved[moved != 0][0] < 0:
+        parts.reverse()
+    rest = known[moved == 0][:1]
+    return np.concatenate([rest, parts[0], np.full((1, 2), np.nan), rest, parts[1]])
+
+
+def _check_cycles(wall: MeasuredWall) -> None:
+    """Refuse a record of cycles that cannot be in the order of the test."""
+    known = wall.curve[~np.isnan(wall.curve[:, 0])]
+    steps, force = np.diff(known[:, 0]), known[:, 1]
+    clear = np.sign(force[np.abs(force) > NOISE * np.abs(force).max()])
+    is_sorted = (steps >= 0).all() or (steps <= 0).all()
+    found = loops(wall.curve)
+    work, turnover = sum(loop.work for loop in found), sum(loop.turnover for loop in found)
+    for told, is_wrong in (
+        ("its rows are sorted by displacement", is_sorted and np.count_nonzero(np.diff(clear)) > 1),
+        ("its cycles release energy", work < -LEAST_DISSIPATED * turnover),
+    ):
+        if is_wrong:
+            what = f"must have its rows in the order of the test, and {HEADS[0]} and {HEADS[1]} not exchanged; {told}"
+            raise SceneError(f"{wall.name}.csv", what)
 
 
 def _peaks(wall: MeasuredWall, positive: float | None, negative: float | None) -> tuple[float, ...]:

@@ -50,6 +50,8 @@ class MeasuredWall:
         Its scene, if that is not made from the row, and the drawing of its cracks.
     is_turned
         Whether its record went to the negative side, and has its signs reversed here; its cracks are not mirrored.
+    is_reversed
+        Whether its record led from its farthest displacement to rest, and has its rows in the opposite order here.
     """
 
     name: str
@@ -60,6 +62,7 @@ class MeasuredWall:
     scene_file: Path | None = None
     cracks: Path | None = None
     is_turned: bool = False
+    is_reversed: bool = False
 
     @property
     def reference(self) -> str:

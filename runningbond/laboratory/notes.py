@@ -36,6 +36,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _other_stone,
         _low_force,
         _turned,
+        _reversed,
         _offset,
         _other_peak,
     )
@@ -127,6 +128,11 @@ def _low_force(wall: MeasuredWall) -> list[str]:
 def _turned(wall: MeasuredWall) -> list[str]:
     what = "the record goes to the negative side; its curve is drawn and scored with reversed signs"
     return [what] if wall.is_turned else []
+
+
+def _reversed(wall: MeasuredWall) -> list[str]:
+    what = "the record starts at its largest displacement and ends at rest; it is read from its last row to its first"
+    return [what] if wall.is_reversed else []
 
 
 def _offset(wall: MeasuredWall) -> list[str]:

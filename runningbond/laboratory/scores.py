@@ -14,7 +14,7 @@ import numpy as np
 from runningbond.dynamics.path_curve import LOSS
 from runningbond.scene import Array
 
-from .measured import LARGER, NOISE
+from .measured import LARGER, NOISE, TWO_SIDED
 
 SECANT = 0.3
 """Share of the strength at which the secant stiffness is read."""
@@ -24,6 +24,10 @@ UNLOADED = 0.01
 
 ROUNDING = 1e-9
 """Net work of a loop, relative to the sum of the magnitudes of its increments, up to which it is rounding error."""
+
+LEAST_DISSIPATED = 0.01
+"""Net work of a measured loop, relative to the sum of the magnitudes of its increments, up to which it is no more than
+the error of load cells."""
 
 
 @dataclass(frozen=True)
@@ -55,10 +59,24 @@ class Marks:
 
 
 class Loop(NamedTuple):
-    """A loop of a record: its largest displacement to the positive side [m], and the work of the force along it [J]."""
+    """A loop of a record.
+
+    Parameters
+    ----------
+    reach
+        Its largest displacement to the positive side [m].
+    work
+        Work of the force along it [J].
+    turnover
+        Sum of the magnitudes of the increments of this work [J].
+    is_two_sided
+        Whether it goes to both sides.
+    """
 
     reach: float
     work: float
+    turnover: float = 0.0
+    is_two_sided: bool = True
 
 
 def marks_of(curve: Array, *, cyclic: bool, side: float = 1.0) -> Marks | None:
@@ -172,19 +190,34 @@ def loops(curve: Array) -> list[Loop]:
         if closed:
             pieces.append(np.concatenate([part[rises[-1] :], part[: rises[0] + 1]]) if rises else part)
         least = NOISE * np.ptp(part[:, 0])
-        found += [Loop(float(each[:, 0].max()), _work(each)) for each in pieces if np.ptp(each[:, 0]) > least]
+        found += [_loop(each) for each in pieces if np.ptp(each[:, 0]) > least]
     return found
 
 
-def energy_ratio(predicted: Sequence[Loop], measured: Sequence[Loop]) -> float | None:
-    """Work of predicted loops over that of measured loops of equal reach, to within `LARGER`.
+def _loop(piece: Array) -> Loop:
+    """A loop of a piece of a record; its work is that of the trapezoidal rule, and zero if it is only rounding."""
+    steps = np.diff(piece[:, 0]) * (piece[1:, 1] + piece[:-1, 1]) / 2
+    work, turnover = float(steps.sum()), float(np.abs(steps).sum())
+    right, left = float(piece[:, 0].max()), -float(piece[:, 0].min())
+    is_two_sided = min(right, left) > TWO_SIDED * max(right, left)
+    return Loop(right, work if abs(work) > ROUNDING * turnover else 0.0, turnover, is_two_sided)
 
-    Of several loops of equal reach the first counts. None if no predicted loop has the reach of a measured one.
+
+def energy_ratio(predicted: Sequence[Loop], measured: Sequence[Loop]) -> float | None:
+    """Work of predicted loops over that of measured loops of equal reach, to within `LARGER`, to as many sides.
+
+    Of several loops of equal reach the first counts. None if no predicted loop has the reach of a measured one that
+    dissipates.
     """
     own, theirs, farthest = 0.0, 0.0, 0.0
     for loop in measured:
-        alike = [each.work for each in predicted if loop.reach / LARGER <= each.reach <= loop.reach * LARGER]
-        if loop.reach > LARGER * farthest and alike:
+        alike = [
+            each.work
+            for each in predicted
+            if loop.reach / LARGER <= each.reach <= loop.reach * LARGER and each.is_two_sided == loop.is_two_sided
+        ]
+        dissipates = loop.work > LEAST_DISSIPATED * loop.turnover
+        if loop.reach > LARGER * farthest and alike and dissipates:
             own, theirs, farthest = own + alike[0], theirs + loop.work, loop.reach
     return own / theirs if theirs > 0 else None
 
@@ -219,13 +252,6 @@ def _rises(part: Array) -> list[int]:
             rises.append(k)
         below = force <= -least or (below and force < 0)
     return rises
-
-
-def _work(piece: Array) -> float:
-    """Work of the force [J] along a piece, by the trapezoidal rule; zero if the net work is only rounding error."""
-    steps = np.diff(piece[:, 0]) * (piece[1:, 1] + piece[:-1, 1]) / 2
-    work = float(steps.sum())
-    return work if abs(work) > ROUNDING * float(np.abs(steps).sum()) else 0.0
 
 
 def residual(curve: Array) -> float | None:

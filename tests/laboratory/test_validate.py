@@ -344,7 +344,7 @@ def test_cyclic_wall_without_a_record_is_said_to_be_pushed_to_one_side(
     row = GRANITE.replace("Monotonic", "Cyclic")
     folder, out = write_folder(tmp_path / "walls", row, row.replace("WS.175", "WS2.175")), tmp_path / "out"
     (folder / "WS.175.csv").unlink()
-    (folder / "WS2.175.csv").write_text("displacement_mm,force_kN\n0,0\n10,61\n-10,-61\n")
+    (folder / "WS2.175.csv").write_text("displacement_mm,force_kN\n0,0\n10,61\n9,0\n-10,-61\n")
     assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking"]) == 0
     notes = [line for line in capsys.readouterr().err.splitlines() if line.startswith("note: WS")]
     said = "the test was cyclic, but there is no WS.175.csv with its cycles; models push the wall to one side"

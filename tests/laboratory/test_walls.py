@@ -1,11 +1,11 @@
 """Table rows become scenes: facts of the campaigns, and a one-line error for invalid input."""
 
 import csv
-import itertools
 import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise, product
 from pathlib import Path
 
 import numpy as np
@@ -908,6 +908,68 @@ def test_envelope_from_one_side_to_the_other_is_read_from_rest(order: int, kind:
     assert notes_on(wall) == [said]
 
 
+RIGHT, LEFT = ENVELOPE[3:], ENVELOPE[:4]
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [*RIGHT, *LEFT[::-1]],
+        [*RIGHT[1:], *LEFT[-2::-1]],
+        [*RIGHT[::-1], None, *LEFT],
+        [*RIGHT[::-1], None, *LEFT[::-1]],
+        [RIGHT[0], RIGHT[1], LEFT[2], RIGHT[2], LEFT[1], RIGHT[3], LEFT[0]],
+    ],
+    ids=["side by side", "without rest", "inward", "across rest", "peaks in turn"],
+)
+def test_both_sides_of_an_envelope_are_read_from_rest_in_any_order(
+    rows: list[tuple[int, int] | None], tmp_path: Path
+) -> None:
+    """The step from one side to the other was once read as unloading, with a stiffness of a twentieth."""
+    curve = "displacement_mm,force_kN\n" + "".join(f"{row[0]},{row[1]}\n" if row else "NaN,NaN\n" for row in rows)
+    row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,", ",,")
+    (wall,) = read_folder(write_folder(tmp_path, row, curve=curve))
+    marks = marks_of(wall.curve, cyclic=wall.is_cyclic, side=wall.side)
+    assert marks is not None
+    assert (wall.path, wall.peaks) == ((0.02, -0.02), (61e3, 59e3))
+    assert (marks.at_peak, marks.stiffness, marks.residual) == pytest.approx((0.01, 20e6, None))
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("kind", ["Monotonic", "Cyclic", ""])
+def test_record_that_ends_at_rest_is_read_from_there(kind: str, side: int, tmp_path: Path) -> None:
+    """Its last row is that of the unloaded wall; read from the first, the secant once went to the farthest point."""
+    rows = [f"{side * x},{side * y}\n" for x, y in [(20, 40), (10, 61), (1, 30), (0, 0)]]
+    curve = "displacement_mm,force_kN\n" + "".join(rows)
+    (wall,) = read_folder(write_folder(tmp_path, GRANITE.replace("Monotonic", kind), curve=curve))
+    marks = marks_of(wall.curve, cyclic=wall.is_cyclic, side=wall.side)
+    assert marks is not None
+    assert (marks.at_peak, marks.stiffness) == pytest.approx((0.01, 30e6))
+    said = "the record starts at its largest displacement and ends at rest; it is read from its last row to its first"
+    assert said in notes_on(wall)
+
+
+@pytest.mark.parametrize(
+    ("order", "heads", "said"),
+    [
+        ("time", "force_kN,displacement_mm", "its cycles release energy"),
+        ("reverse", "displacement_mm,force_kN", "its cycles release energy"),
+        ("sorted", "displacement_mm,force_kN", "its rows are sorted by displacement"),
+    ],
+)
+def test_cycles_that_cannot_be_in_the_order_of_the_test_are_refused(
+    order: str, heads: str, said: str, tmp_path: Path
+) -> None:
+    """Friction of 10 kN beside a spring, to 2 and 4 mm; in any other order its scores were once meaningless."""
+    turns = [(0, 10), (2, 20), (2, 0), (-2, -20), (-2, 0), (4, 30), (4, 10), (-4, -30), (-4, -10), (0, 10)]
+    rows = [(x + k * (x1 - x) / 4, y + k * (y1 - y) / 4) for (x, y), (x1, y1) in pairwise(turns) for k in range(4)]
+    rows = {"time": rows, "reverse": rows[::-1], "sorted": sorted(rows)}[order]
+    row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,", ",,")
+    curve = "\n".join([heads, *(f"{x},{y}" for x, y in rows)]) + "\n"
+    with pytest.raises(SceneError, match=said):
+        read_folder(write_folder(tmp_path, row, curve=curve))
+
+
 def test_half_a_cycle_is_no_envelope(tmp_path: Path) -> None:
     """On its way from one side to the other a wall that slides resists at rest as well."""
     curve = "displacement_mm,force_kN\n-20,-55\n-18,40\n0,50\n20,61\n"
@@ -943,7 +1005,7 @@ def test_force_of_the_other_side_may_be_signed(tmp_path: Path) -> None:
     for forces, peaks in ((",61,,", (61e3, 40e3)), (",,-43,", (58e3, 43e3)), (",,,", (58e3, 40e3))):
         partly = cyclic.replace(",61,-43,", forces)
         assert read_folder(write_folder(tmp_path, partly, curve=record))[0].peaks == peaks
-    for sign, forces in itertools.product((1, -1), (",61,,", ",,-61,", ",61,0,", ",0,61,")):
+    for sign, forces in product((1, -1), (",61,,", ",,-61,", ",61,0,", ",0,61,")):
         # Of a push to one side the one number counts, whichever side it is.
         one_sided = "displacement_mm,force_kN\n0,0\n" + f"{5 * sign},{58 * sign}\n{10 * sign},{57 * sign}\n"
         for kind in ("Cyclic", "Monotonic"):
