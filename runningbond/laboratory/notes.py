@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from runningbond.scene import SceneError
 from runningbond.scene.plausibility import warnings
 
+from .formulas import pressed
 from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
 from .rig import Features, driven_path, load_in_name, scene_of, vertical_load
@@ -18,6 +20,9 @@ OF_A_SCENE = ("H", "L", "t", "hb", "lb", "Ntot", "σ0,pc", "Stone")
 
 SAME_STONE = 0.05
 """Relative difference up to which a number in a wall's row is that of its stone."""
+
+SAME_SIZE = 0.05
+"""Relative difference up to which a size or a load of a wall's scene is that of its row."""
 
 SAME_PEAK = 0.05
 """Relative difference up to which the largest forces of a wall's record and of its table are the same."""
@@ -34,6 +39,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _envelope,
         _load_of_name,
         _other_stone,
+        _other_size,
         _low_force,
         _turned,
         _reversed,
@@ -114,6 +120,38 @@ def _other_stone(wall: MeasuredWall) -> list[str]:
     )
     what = f"not read: {unlike}; models take the numbers of {row.text('stone').casefold()} in brackets"
     return [f"{what}, and a wall of other stone needs a {wall.name}.toml"] if unlike else []
+
+
+def _other_size(wall: MeasuredWall) -> list[str]:
+    """A scene of another length, thickness or load than the wall's row: one of both has a slip."""
+    if wall.scene_file is None:
+        return []
+    scene = scene_of(wall, Features())
+    (left, _), (right, _) = scene.blocks.extent(scene.masonry)
+    thickness, load = scene.thickness_of_blocks[scene.masonry], pressed(scene)
+    length, stress, total = (_entry(wall, column) for column in ("L", "σ0,pc", "Ntot"))
+    told = {"L": (length, right - left, right - left, 1e-3, "mm")}
+    told["t"] = _entry(wall, "t"), float(thickness.min()), float(thickness.max()), 1e-3, "mm"
+    if stress is not None:
+        area = (right - left) * float(thickness.mean())
+        told["σ0,pc"] = stress, load / area, load / area, 1e6, "MPa"
+    weight = -float(scene.mass[scene.masonry].sum() * scene.load.gravity[1])
+    told["Ntot"] = total, load, load + weight, 1e3, "kN"
+    unlike = ", ".join(
+        f"{column} = {value / unit:.4g} {name} (for {(low if value < low else high) / unit:.4g})"
+        for column, (value, low, high, unit, name) in told.items()
+        if value is not None and not (1 - SAME_SIZE) * low <= value <= (1 + SAME_SIZE) * high
+    )
+    what = f"not read: {unlike}; models take the numbers of {wall.scene_file.name} in brackets"
+    return [what] if unlike else []
+
+
+def _entry(wall: MeasuredWall, column: str) -> float | None:
+    """A number of a wall's row that no model reads, in SI units; None if the entry is no such number."""
+    try:
+        return wall.row.optional(column)
+    except SceneError:
+        return None
 
 
 def _low_force(wall: MeasuredWall) -> list[str]:

@@ -826,12 +826,37 @@ def test_likely_slips_of_scenes_are_noted(tmp_path: Path) -> None:
     tables["beam"]["force"] = [0, -175]
     tables["joint"]["compressive_strength"] = 73
     write_toml(tables, tmp_path / "WS.175.toml")
-    strength, force = notes_on(read_folder(tmp_path)[0])
+    strength, force, _ = notes_on(read_folder(tmp_path)[0])
     assert strength.startswith("joint.compressive_strength = 73: is not within 10000 … 1e+10 Pa; is 73 MPa meant")
     assert force == "beam.force: 175 N is only 3.6% of the wall's weight; are kN meant?"
     thin = one(tmp_path / "thin", GRANITE.replace(",200,1325", ",0.2,1325"))
     (said,) = notes_on(thin)
     assert said.startswith("in the scene of its row, wall.thickness = 0.0002: is odd for blocks")
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "said"),
+    [
+        ("", 1.0, ""),
+        ("L [mm]", 1.04, ""),
+        ("L [mm]", 4.5, "L = 4500 mm (for 1000)"),
+        ("t [mm]", 0.5, "t = 100 mm (for 200)"),
+        ("σ0,pc [MPa]", 1.0, ""),
+        ("σ0,pc [MPa]", 0.1, "σ0,pc = 0.0875 MPa (for 0.875)"),
+        ("Ntot [kN]", 1.0, ""),
+        ("Ntot [kN]", 0.1, "Ntot = 17.98 kN (for 175)"),
+        ("Ntot [kN]", 10.0, "Ntot = 1798 kN (for 179.8)"),
+    ],
+)
+def test_scene_of_another_size_than_the_row_is_noted(column: str, factor: float, said: str, tmp_path: Path) -> None:
+    """Widths of courses in metres instead of block widths once made a wall of a quarter of the length, unnoticed."""
+    known = {"L [mm]": 1000, "t [mm]": 200, "σ0,pc [MPa]": 0.875, "Ntot [kN]": 179.8}
+    heads, row = f'Test unit name,"{column or "Remark"}"', f"WS.175,{known.get(column, 1) * factor:g}"
+    folder = write_folder(tmp_path / "own", row, heads=heads)
+    write_toml(_tables(one(tmp_path / "row"), ALL), folder / "WS.175.toml")
+    (wall,) = read_folder(folder)
+    what = f"not read: {said}; models take the numbers of WS.175.toml in brackets"
+    assert notes_on(wall) == ([what] if said else [])
 
 
 def test_wall_of_which_nothing_was_measured_is_noted(tmp_path: Path) -> None:
