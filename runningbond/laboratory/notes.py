@@ -8,7 +8,7 @@ from runningbond.scene.plausibility import warnings
 from .formulas import pressed
 from .measured import NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
-from .rig import Features, driven_path, load_in_name, scene_of, vertical_load
+from .rig import RICHEST, Features, driven_path, load_in_name, scene_of, vertical_load
 from .scores import goes_to_both_sides, is_envelope
 from .stones import find_stone
 
@@ -51,7 +51,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
 
 def _likely_slips(wall: MeasuredWall) -> list[str]:
     """What `runningbond run` would say of the wall's scene with all of its features."""
-    scene = scene_of(wall, Features(closes=True, crushes=True, splits=True))
+    scene = scene_of(wall, RICHEST)
     place = "" if wall.scene_file else "in the scene of its row, "
     return [f"{place}{line}" for line in (*scene.notes, *warnings(scene))]
 

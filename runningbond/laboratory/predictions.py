@@ -19,7 +19,7 @@ from .formulas import FORMULAS, by_hand
 from .ladder import Rung
 from .measured import MeasuredWall
 from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
-from .rig import scene_of
+from .rig import RICHEST, scene_of
 from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, goes_to_both_sides, has_cycles, marks_of, ratio
 
 ARRIVED = 0.99
@@ -170,10 +170,14 @@ class Prediction:
 def scenes_of(
     walls: Sequence[MeasuredWall], rungs: Sequence[Rung], refuse: Callable[[SceneError], None] = raised
 ) -> dict[Cell, Scene]:
-    """The scene of every wall for every rung; `refuse` is called for walls without one, as in `read_folder`."""
+    """The scene of every wall for every rung; `refuse` is called for walls without one, as in `read_folder`.
+
+    Walls are refused for the parts of their descriptions that no rung takes as well, whichever rungs are asked for.
+    """
     scenes: dict[Cell, Scene] = {}
     for wall in walls:
         try:
+            scene_of(wall, RICHEST)
             scenes |= {(wall.name, rung.name): scene_of(wall, rung.features) for rung in rungs}
         except SceneError as error:
             where = wall.row.place if wall.scene_file is None else wall.scene_file.name

@@ -64,6 +64,10 @@ class Features:
     parts: int = 1
 
 
+RICHEST = Features(closes=True, crushes=True, splits=True)
+"""All features that a wall's description may have."""
+
+
 def scene_of(wall: MeasuredWall, features: Features) -> Scene:
     """The scene of a wall, with the given features."""
     if wall.scene_file is None:

@@ -184,10 +184,10 @@ def verdicts(sums: Sequence[Total]) -> list[str]:
         if models:
             most = max(each.answers for each in models)
             least = min((each for each in models if each.answers == most), key=lambda each: each.median or 0.0)
+            modes = "" if least.modes is None else f"; {percent(least.modes)} of its modes are right"
             lines.append(
                 f"Walls with {kind} joints: median |ΔV| {percent(least.median)} by `{least.model}` at best, of those "
-                f"that answer on {most} of {least.walls}; "
-                f"{percent(least.worst)} at worst; {percent(least.modes)} of its modes are right."
+                f"that answer on {most} of {least.walls}; {percent(least.worst)} at worst{modes}."
             )
         lines += [
             f"`{each.model}` has not earned its cost on walls with {kind} joints: it is nearer than the better "

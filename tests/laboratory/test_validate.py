@@ -318,6 +318,19 @@ def test_refused_wall_does_not_stop_the_others(tmp_path: Path, capsys: pytest.Ca
     assert "## marble" not in page
 
 
+def test_scene_that_only_other_models_cannot_read_does_not_stop_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Notes on a wall read its inner joint whatever the models, and once ended the command without its name."""
+    folder, out = write_folder(tmp_path / "walls", GRANITE, "pier,,,,,,,,,,,,,"), tmp_path / "out"
+    write_toml(leaning(1) | {"inner_joint": {"friction": -0.7}}, folder / "pier.toml")
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking"]) == 2
+    told = capsys.readouterr()
+    assert "pier.toml: inner_joint.friction = -0.7: must be a number at least 0" in told.err
+    assert "WS.175" in told.out
+    assert "pier" not in told.out
+
+
 def test_curves_without_a_wall_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Otherwise a curve with a typing error in its name would go unnoticed."""
     folder = write_folder(tmp_path / "walls", GRANITE)
