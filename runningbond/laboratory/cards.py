@@ -17,6 +17,7 @@ from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.scene import Array
 
 from .ladder import LADDER
+from .measured import growing
 from .predictions import Prediction
 from .scores import cycle_ends, cycle_peaks
 from .summary import errors_by_hand, kind_of
@@ -106,7 +107,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         x, y = each.curve.T
         axes.plot(1e3 * x, y / 1e3, lw=0.6 if each.is_to_and_fro else 1.2, **look)
         if wall.is_cyclic and each.is_to_and_fro:
-            _envelope(axes, each.curve, ends, each.rung.model.colour)
+            _envelope(axes, each.curve, ends or _own_ends(each), each.rung.model.colour)
     if wall.is_cyclic and len(wall.curve):
         _envelope(axes, wall.curve, ends, MEASURED, "measured, peaks of its cycles")
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
@@ -114,6 +115,12 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)
     axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
     bare(axes)
+
+
+def _own_ends(prediction: Prediction) -> tuple[float, ...]:
+    """Ends of the growing cycles of a prediction without a record, whose curve starts to the positive side."""
+    path = prediction.scene.drive_path
+    return cycle_ends(growing([float(np.copysign(1.0, path[0])) * goal for goal in path]))
 
 
 def _envelope(axes: Axes, curve: Array, path: tuple[float, ...], colour: str, label: str | None = None) -> None:

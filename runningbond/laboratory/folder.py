@@ -201,7 +201,8 @@ def _wall(folder: Path, row: TableRow, others: Iterable[str]) -> MeasuredWall:
     if len(curve) and peaks:
         largest, told = float(np.nanmax(np.abs(curve[:, 1]))), max(peaks)
         if not told / WRONG_UNIT < largest < told * WRONG_UNIT:
-            what = f"has a largest force of {largest:.3g} N, and the table one of {told:.3g} N; are their units right?"
+            forces = f"{largest / 1e3:.3g} kN, and the table one of {told / 1e3:.3g} kN"
+            what = f"has a largest force of {forces}; are their units right?"
             raise SceneError(f"{name}.csv", what)
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
     if wall.is_cyclic and min(wall.reach) > NOISE * max(wall.reach):

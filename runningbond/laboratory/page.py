@@ -13,7 +13,7 @@ from runningbond.pictures.legend import thickness_text
 from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.results.outcome import two_digits
-from runningbond.scene import BlockMaterial, JointMaterial, SceneError, table_of
+from runningbond.scene import BlockMaterial, JointMaterial, Mortar, SceneError, Stiffness, table_of
 from runningbond.studies.page import Block, Picture, write_page, write_picture
 
 from .cards import card, drawn_by, error_over_cost
@@ -137,9 +137,8 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
 def _parameters(one: Prediction) -> Sheet:
     """Table of all material parameters that a model receives, by their keys in the scene file."""
     materials: list[BlockMaterial | JointMaterial] = [*one.scene.block_materials, *one.scene.joint_materials]
-    rows = [
-        [f"{table_of(material)}.{key}", f"{value:.5g}"] for material in materials for key, value in _numbers(material)
-    ]
+    numbers = ((f"{table_of(each)}.{key}", f"{value:.5g}") for each in materials for key, value in _numbers(each))
+    rows = [list(row) for row in dict.fromkeys(numbers)]  # copies of one material are equal
     return Sheet(f"Materials, as {one.rung.name} is handed them, in SI units", ("key", "value"), rows)
 
 
@@ -148,7 +147,11 @@ def _numbers(part: Any) -> Iterator[tuple[str, float]]:
     crushes = getattr(part, "compressive_strength", None) is not None
     for entry in fields(part):
         value = getattr(part, entry.name)
-        if is_dataclass(value):
+        if isinstance(value, Stiffness):
+            yield from ((f"{key}_stiffness", number) for key, number in _numbers(value))
+        elif isinstance(value, Mortar):
+            yield from ((f"mortar.{key}", number) for key, number in _numbers(value))
+        elif is_dataclass(value):
             yield from ((f"{entry.name}.{key}", number) for key, number in _numbers(value))
         elif isinstance(value, float) and (value != entry.default or (crushes and entry.name == "cap_shear")):
             yield entry.name, value

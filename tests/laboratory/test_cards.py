@@ -18,9 +18,10 @@ from runningbond.laboratory.folder import SHIPPED, read_folder, shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.page import score_sheet
 from runningbond.laboratory.predictions import Prediction, predict, scenes_of
-from runningbond.laboratory.rig import scene_of
+from runningbond.laboratory.rig import Features, _tables, scene_of
 from runningbond.results import Outcome
 from tests.laboratory.folders import CURVE, GRANITE, write_folder
+from tests.walls import write_toml
 
 PIXEL = 1.0
 
@@ -39,6 +40,23 @@ def test_card_draws_the_model_nearest_to_the_test_and_clips_no_text(tmp_path: Pa
         box = each.get_window_extent()
         assert figure.bbox.y0 <= box.y0
         assert box.y1 <= figure.bbox.y1 + PIXEL
+
+
+@pytest.mark.parametrize("first", [1, -1])
+def test_card_of_cycles_without_a_record_has_the_envelope_of_their_prediction(first: int, tmp_path: Path) -> None:
+    """Cycles of 1 and 2 mm, each twice, in a scene: a curve starts to the positive side, whichever that is."""
+    folder = write_folder(tmp_path / "walls", "pier,Cyclic,,,,,,,,,,44,,R")
+    (folder / "pier.csv").unlink()
+    tables = _tables(read_folder(write_folder(tmp_path / "row", GRANITE))[0], Features())
+    tables["beam"]["drive"] = {"amplitudes": [first * 1e-3, first * 2e-3], "cycles": 2, "at": 1.325}
+    write_toml(tables, folder / "pier.toml")
+    (wall,), rung = read_folder(folder), LADDER["rigid"]
+    goals = np.array([0.0, 1, -1, 1, -1, 2, -2, 2, -2, 0])
+    moved = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(goals)])
+    outcome = Outcome("", "", "collapse", 20.0, curve=np.column_stack([1e-3 * moved, 10e3 * moved]))
+    figure = card([Prediction(wall, rung, scene_of(wall, rung.features), outcome)])
+    (line,) = [each for each in figure.axes[0].lines if each.get_marker() == "o"]
+    assert np.asarray(line.get_xydata()) == pytest.approx(np.array([(-2, -20), (-1, -10), (1, 10), (2, 20)]), rel=0.03)
 
 
 def test_mechanism_against_its_loads_is_not_drawn(tmp_path: Path) -> None:

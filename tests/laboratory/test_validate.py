@@ -12,6 +12,7 @@ import pytest
 from runningbond.commands.command_line import command
 from runningbond.laboratory import read_folder
 from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.page import _parameters
 from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
 from runningbond.results import Outcome
@@ -396,6 +397,26 @@ def test_page_lists_the_shape_of_the_cap_of_joints_that_crush(model: str, crushe
     page = (out / "laboratory.md").read_text()
     assert ("| joint.cap_shear | 9 |" in page) == crushes
     assert "C_ss of their cap" in page
+
+
+def test_page_lists_each_material_once_by_the_keys_of_scene_files(tmp_path: Path) -> None:
+    """A copy of a joint that has no strength in places is listed with its own numbers only."""
+    folder, out = write_folder(tmp_path / "walls", "pier,,,,,,,,,,,,,"), tmp_path / "out"
+    mortar = {"young": 2e9, "poisson": 0.25, "thickness": 0.01}
+    tables = leaning(1) | {"joint": {"friction": 0.7, "mortar": mortar}}
+    tables["joints"] = {"lime": {"friction": 0.6, "normal_stiffness": 5e9, "shear_stiffness": 2e9}}
+    tables["assign"] = [{"joint": "lime", "orientation": "head"}]
+    write_toml(tables, folder / "pier.toml")
+    scene = scene_of(read_folder(folder)[0], Features())
+    (joint, lime) = scene.joint_materials
+    twice = replace(scene, joint_materials=(joint, lime, replace(lime, friction=0.0)))
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]) == 0
+    page = (out / "laboratory.md").read_text()
+    assert "| joint.mortar.young | 2e+09 |" in page
+    assert "| joints.lime.normal_stiffness | 5e+09 |" in page
+    one = Prediction(read_folder(folder)[0], LADDER["rigid"], twice, None)
+    keys = [key for key, _ in _parameters(one).rows]
+    assert [keys.count(f"joints.lime.{key}") for key in ("friction", "normal_stiffness")] == [2, 1]
 
 
 def test_picture_of_a_wall_with_a_space_in_its_name_is_linked(tmp_path: Path) -> None:

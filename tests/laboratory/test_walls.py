@@ -550,7 +550,7 @@ def test_name_of_a_table_decides_on_its_separator(tmp_path: Path) -> None:
 def test_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_path: Path) -> None:
     """Newtons under a head in kilonewtons were once accepted without a message."""
     curve = "displacement_mm,force_kN\n0,0\n" + f"10,{61 * factor:g}\n"
-    with pytest.raises(SceneError, match=r"WS\.175\.csv: has a largest force of .* one of 6\.1e\+04 N; are their"):
+    with pytest.raises(SceneError, match=r"WS\.175\.csv: has a largest force of .* one of 61 kN; are their"):
         read_folder(write_folder(tmp_path, GRANITE, curve=curve))
     assert len(read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))) == 1
 
@@ -857,6 +857,18 @@ def test_scene_of_another_size_than_the_row_is_noted(column: str, factor: float,
     (wall,) = read_folder(folder)
     what = f"not read: {said}; models take the numbers of WS.175.toml in brackets"
     assert notes_on(wall) == ([what] if said else [])
+
+
+@pytest.mark.parametrize(
+    ("kind", "other", "noted"), [("Cyclic", "59", True), ("Cyclic", "", False), ("Monotonic", "59", False)]
+)
+def test_record_of_one_side_of_a_cyclic_test_is_noted(kind: str, other: str, noted: bool, tmp_path: Path) -> None:
+    wall = one(tmp_path, GRANITE.replace("Monotonic", kind).replace(",61,,", f",61,{other},"))
+    said = (
+        "the table has largest forces to both sides, but the record goes to one; models push the wall to that side, "
+        "and their strength is compared with the mean of both"
+    )
+    assert notes_on(wall) == ([said] if noted else [])
 
 
 def test_wall_of_which_nothing_was_measured_is_noted(tmp_path: Path) -> None:
