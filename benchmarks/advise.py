@@ -17,6 +17,7 @@ from runningbond.compare.table import bracket
 from runningbond.models import MODELS, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
+from runningbond.scene.errors import exits_in_a_line
 
 
 def timed_model(model: str, scene: Scene, tolerance: float) -> tuple[Outcome | None, float]:
@@ -37,7 +38,7 @@ def main() -> None:
     parser.add_argument("--against", type=float, help="tolerance of the six models, the same by default")
     arguments = parser.parse_args()
     against = arguments.against or arguments.tolerance
-    walls = arguments.walls or [case.name for case in PUBLISHED]
+    walls = {name: published_scene(name) for name in arguments.walls or [case.name for case in PUBLISHED]}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for model in ("dem-dynamic", "fem"):  # kernels are compiled before anything is measured
@@ -45,8 +46,7 @@ def main() -> None:
     print("| wall | advise | by | rungs | s | all six | s | ratio |")
     print("|---|---|---|---|---|---|---|---|")
     total_advice, total_all = 0.0, 0.0
-    for name in walls:
-        scene = published_scene(name)
+    for name, scene in walls.items():
         start = time.process_time()
         advice = advise(scene, arguments.tolerance)
         spent = time.process_time() - start
@@ -65,4 +65,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with exits_in_a_line():
+        main()

@@ -19,12 +19,13 @@ from dem.finite_system import finite_system
 from dem.rigid_system import contact_points
 from runningbond.dynamics import Run, State, collapse_by_steps
 from runningbond.dynamics.run import MOVING
-from runningbond.laboratory import shipped_walls
+from runningbond.laboratory import chosen_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.laboratory.scores import Marks, marks_of
 from runningbond.models import TOLERANCE
 from runningbond.scene import Scene
+from runningbond.scene.errors import exits_in_a_line
 
 RATE = 0.04
 """Speed of the beam [m/s], about the one at which the largest forces of the shipped walls converge."""
@@ -77,7 +78,7 @@ def change(now: float | None, before: float | None) -> str:
 
 def main(names: list[str]) -> None:
     """Print one row per wall and change."""
-    walls = shipped_walls()
+    walls = chosen_walls(names)
     print("| wall | what | V [kN] | V | stiffness | at the peak | at 0.8 | energy unaccounted | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for name in names:
@@ -104,4 +105,5 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["SW.200.1", "WS.250"])
+    with exits_in_a_line():
+        main(sys.argv[1:] or ["SW.200.1", "WS.250"])

@@ -10,11 +10,12 @@ import sys
 from dataclasses import replace
 from statistics import median
 
-from runningbond.laboratory import shipped_walls
+from runningbond.laboratory import chosen_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.models import TOLERANCE
 from runningbond.scene import Scene
+from runningbond.scene.errors import exits_in_a_line
 
 MODELS = ("rigid-splitting", "fem-splitting")
 TO, REPEATS = 0.02, 3
@@ -30,7 +31,7 @@ def pushed(scene: Scene, displacement: float) -> Scene:
 
 def main(names: list[str]) -> None:
     """Print one row per wall and model."""
-    walls = shipped_walls()
+    walls = chosen_walls(names)
     print("| wall | blocks | model | status | V [kN] | time steps | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for name in names:
@@ -48,4 +49,5 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["SW.30.1", "SW.200.1", "SW.200.2", "WS.100", "WS.250"])
+    with exits_in_a_line():
+        main(sys.argv[1:] or ["SW.30.1", "SW.200.1", "SW.200.2", "WS.100", "WS.250"])

@@ -11,14 +11,15 @@ import time
 from runningbond.compare import PUBLISHED, published_scene
 from runningbond.limit import limit_nonassociated
 from runningbond.scene import Scene
+from runningbond.scene.errors import exits_in_a_line
 
 INSET = 0.02
 
 
 def main(names: list[str]) -> None:
     """Print one row per wall."""
-    print("wall                 blocks   lower         upper         programs   seconds")
     scenes: list[tuple[str, Scene]] = [(name, published_scene(name)) for name in names]
+    print("wall                 blocks   lower         upper         programs   seconds")
     scenes += [(f"{name}, inset", scene.with_joint(inset=INSET)) for name, scene in scenes if name.startswith("wall")]
     for name, scene in scenes:
         start = time.process_time()
@@ -29,4 +30,5 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or [case.name for case in PUBLISHED])
+    with exits_in_a_line():
+        main(sys.argv[1:] or [case.name for case in PUBLISHED])

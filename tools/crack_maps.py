@@ -12,13 +12,14 @@ from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
 from runningbond.dynamics import Run, State
 from runningbond.joints.law import PLASTIC_CLOSURE
-from runningbond.laboratory import shipped_walls
+from runningbond.laboratory import chosen_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.pictures.charts import bare
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.style import CHART_COLOURS, CRUSHED, STATE_COLOURS
 from runningbond.scene import Array
+from runningbond.scene.errors import exits_in_a_line
 
 SCALE = 12.0
 KINDS = (
@@ -66,7 +67,7 @@ def draw(axes: Axes, seen: LastLook) -> None:
 
 def main(path: Path, names: list[str]) -> None:
     """Draw walls side by side, with their curves."""
-    walls = shipped_walls()
+    walls = chosen_walls(names)
     figure = Figure(figsize=(3.6 * (len(names) + 1), 3.9), layout="constrained")
     *maps, curves = figure.subplots(1, len(names) + 1)
     for axes, name, colour in zip(maps, names, CHART_COLOURS, strict=False):
@@ -89,4 +90,5 @@ def main(path: Path, names: list[str]) -> None:
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit("python tools/crack_maps.py PICTURE WALL …")
-    main(Path(sys.argv[1]), sys.argv[2:])
+    with exits_in_a_line():
+        main(Path(sys.argv[1]), sys.argv[2:])

@@ -19,6 +19,7 @@ from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.joints import Rule, gauss, lobatto
 from runningbond.results import Outcome
 from runningbond.scene import Scene
+from runningbond.scene.errors import exits_in_a_line
 
 WALLS = {"panel-02": 2, "panel-04": 4, "panel-06": 2, "wall-w1": 4}
 """Walls, and the number of cells of the finest mesh for each."""
@@ -85,10 +86,10 @@ def row(name: str, case: str, outcome: Outcome, reference: float | None) -> str:
 
 def main() -> None:
     """Print the table."""
+    walls = {name: wall(name) for name in sys.argv[1:] or WALLS}
     print("| wall | rule | on | cells | modes | loads | first step | λ | to `dem-dynamic` |")
     print("|---|---|---|---|---|---|---|---|---|")
-    for name in sys.argv[1:] or WALLS:
-        scene = wall(name)
+    for name, scene in walls.items():
         for step in (FIRST_STEP, 0.04, 0.06):
             rigid = dem_dynamic(scene, first_step=step)
             if step == FIRST_STEP:
@@ -99,4 +100,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with exits_in_a_line():
+        main()

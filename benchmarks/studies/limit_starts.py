@@ -13,6 +13,7 @@ import numpy as np
 
 from runningbond.compare import published_scene
 from runningbond.limit import limit_nonassociated
+from runningbond.scene.errors import exits_in_a_line
 
 DEFAULT_RNG = np.random.default_rng
 
@@ -39,4 +40,5 @@ def main(name: str, searches: int) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else "point-load-quarter", int(sys.argv[2]) if len(sys.argv) > 2 else 20)
+    with exits_in_a_line():
+        main(sys.argv[1] if len(sys.argv) > 1 else "point-load-quarter", int(sys.argv[2]) if len(sys.argv) > 2 else 20)

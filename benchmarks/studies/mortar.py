@@ -15,12 +15,13 @@ from typing import Any
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond.joints import joint_stiffness
-from runningbond.laboratory import shipped_walls
+from runningbond.laboratory import chosen_walls
 from runningbond.laboratory.rig import Features, scene_of, with_inner_stiffness
 from runningbond.laboratory.scores import marks_of
 from runningbond.models import TOLERANCE
 from runningbond.results import Outcome
 from runningbond.scene import Scene, Stiffness
+from runningbond.scene.errors import exits_in_a_line
 
 CRUSHES = Features(closes=True, crushes=True)
 SPLITS = replace(CRUSHES, splits=True)
@@ -100,7 +101,7 @@ CASES = (
 
 def main(names: list[str], words: str) -> None:
     """Print one row per wall and case, for cases whose names contain `words`."""
-    walls = shipped_walls()
+    walls = chosen_walls(names)
     print("| wall | what | V [kN] | ΔV | CPU s |\n| --- | --- | --- | --- | --- |")
     for name in names:
         for case in (case for case in CASES if words in case.what):
@@ -119,4 +120,5 @@ if __name__ == "__main__":
     parser.add_argument("walls", nargs="*", default=["J4D", "J6D", "J7D"])
     parser.add_argument("--only", default="", help="words that a case must have in its name")
     asked = parser.parse_args()
-    main(asked.walls, asked.only)
+    with exits_in_a_line():
+        main(asked.walls, asked.only)

@@ -202,6 +202,8 @@ def first(rest: Resting, history: History, about: float, width: float = 0.06) ->
 
 if __name__ == "__main__":
     tables = {"block": on_the_block, "contacts": on_contacts, "mesh": on_the_mesh, "wall": on_the_wall}
+    if unknown := [part for part in sys.argv[1:] if part not in tables]:
+        sys.exit(f"no such part: {unknown[0]}; there are {', '.join(tables)}")
     for part in sys.argv[1:] or tables:
         for line in tables[part]():
             print(line, flush=True)

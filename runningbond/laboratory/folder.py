@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.image import imread
 
 from runningbond.scene import Array, SceneError
+from runningbond.scene.ranges import suggestion
 
 from .measured import CYCLIC, MONOTONIC, NOISE, MeasuredWall
 from .scores import LEAST_DISSIPATED, loops
@@ -82,6 +83,15 @@ def read_folder(folder: Path, refuse: Callable[[SceneError], None] = raised) -> 
 def shipped_walls() -> dict[str, MeasuredWall]:
     """Walls that the package ships, by name."""
     return {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+
+
+def chosen_walls(names: Iterable[str]) -> dict[str, MeasuredWall]:
+    """Shipped walls of these names, by name; an unknown name raises a `SceneError`."""
+    walls = shipped_walls()
+    for name in names:
+        if name not in walls:
+            raise SceneError("wall", f"must be of {', '.join(walls)}{suggestion(name, list(walls))}", name)
+    return {name: walls[name] for name in names}
 
 
 def unused(folder: Path) -> list[str]:

@@ -66,6 +66,15 @@ def keys_of(table: str, default: str) -> Iterator[None]:
         raise SceneError(table + error.key.removeprefix(default), error.remedy, error.value) from None
 
 
+@contextmanager
+def exits_in_a_line() -> Iterator[None]:
+    """End a script with the line of a `SceneError`, without a traceback."""
+    try:
+        yield
+    except SceneError as error:
+        raise SystemExit(str(error)) from None
+
+
 def abbreviated(value: object) -> str:
     """A value as text for messages, shortened to one line of limited length."""
     try:

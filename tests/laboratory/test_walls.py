@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from runningbond.joints import joint_stiffness
-from runningbond.laboratory import MeasuredWall, read_folder, shipped_walls
+from runningbond.laboratory import MeasuredWall, chosen_walls, read_folder, shipped_walls
 from runningbond.laboratory.folder import DATA, _file, unused
 from runningbond.laboratory.formulas import by_hand
 from runningbond.laboratory.ladder import LADDER, Rung
@@ -26,6 +26,7 @@ from runningbond.laboratory.stones import STONES
 from runningbond.limit import limit
 from runningbond.models import run_model
 from runningbond.scene import Closure, SceneError, Stiffness, scene_from_dict
+from runningbond.scene.errors import exits_in_a_line
 from tests.walls import write_toml
 
 from .folders import CURVE, GRANITE, HEADS, SANDSTONE, write_folder
@@ -44,6 +45,12 @@ def test_nine_dry_and_four_mortared_walls_are_shipped_with_their_licence_and_two
     assert [name for name, wall in walls.items() if wall.cracks] == ["SW.200.1", "WS.250"]
     assert "MIT" in (DATA / "dry" / "LICENSE").read_text()
     assert "10.5281/zenodo.812145" in (DATA / "README.md").read_text()
+
+
+def test_unknown_shipped_wall_ends_a_script_in_a_line() -> None:
+    assert list(chosen_walls(["J4D", "WS.100"])) == ["J4D", "WS.100"]
+    with pytest.raises(SystemExit, match=re.escape("wall = 'WS.10': must be of WS1.100, ")), exits_in_a_line():
+        chosen_walls(["WS.100", "WS.10"])
 
 
 def test_every_file_of_the_laboratory_is_package_data() -> None:
