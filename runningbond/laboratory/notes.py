@@ -15,6 +15,9 @@ from .stones import find_stone
 LOWER = 0.02
 """Part of a wall's height by which its actuator may be lower because sizes are rounded."""
 
+LONG = 50
+"""Length of a path, relative to its largest displacement, above which a note tells that models take long."""
+
 OF_A_SCENE = ("H", "L", "t", "hb", "lb", "Ntot", "σ0,pc", "Stone")
 """Columns that are not read for a wall with a scene of its own."""
 
@@ -37,6 +40,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _unknown_modes,
         _missing_cycles,
         _envelope,
+        _long_path,
         _load_of_name,
         _other_stone,
         _other_size,
@@ -103,6 +107,16 @@ def _envelope(wall: MeasuredWall) -> list[str]:
     """A record of a cyclic test that is the envelope of its cycles."""
     what = "the record is an envelope without cycles; models push the wall once to each side, and no work is compared"
     return [what] if wall.is_cyclic and wall.scene_file is None and is_envelope(wall.curve) else []
+
+
+def _long_path(wall: MeasuredWall) -> list[str]:
+    """A protocol of very many cycles, along which models may take hours."""
+    path = np.array((0.0, *driven_path(wall)))
+    times = float(np.abs(np.diff(path)).sum() / np.abs(path).max()) if path.any() else 0.0
+    what = (
+        f"its path is {times:.0f} times as long as its largest displacement; models that follow it take that many times"
+    )
+    return [f"{what} as long as for one push"] if times > LONG else []
 
 
 def _load_of_name(wall: MeasuredWall) -> list[str]:

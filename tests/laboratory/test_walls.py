@@ -878,6 +878,17 @@ def test_record_of_one_side_of_a_cyclic_test_is_noted(kind: str, other: str, not
     assert notes_on(wall) == ([said] if noted else [])
 
 
+@pytest.mark.parametrize(
+    ("cycles", "said"), [(12, []), (13, ["its path is 52 times as long as its largest displacement"])]
+)
+def test_very_long_protocol_is_noted(cycles: int, said: list[str], tmp_path: Path) -> None:
+    tables = _tables(one(tmp_path / "row"), Features())
+    tables["beam"]["drive"] = {"amplitudes": [0.01], "cycles": cycles, "at": 1.325}
+    folder = write_folder(tmp_path / "own", "WS.175,61", heads='Test unit name,"Vmax,+ [kN]"', curve=CURVE)
+    write_toml(tables, folder / "WS.175.toml")
+    assert [note.partition(";")[0] for note in notes_on(read_folder(folder)[0])] == said
+
+
 def test_wall_of_which_nothing_was_measured_is_noted(tmp_path: Path) -> None:
     folder = write_folder(tmp_path, GRANITE.replace(",61,", ",,"))
     assert notes_on(read_folder(folder)[0]) == []
