@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from runningbond.scene import Array, SceneError
 from runningbond.scene.ranges import suggestion
 
-from .measured import CYCLIC, MONOTONIC, NOISE, MeasuredWall
+from .measured import CYCLIC, DRIFTS, MONOTONIC, NOISE, MeasuredWall
 from .scores import LEAST_DISSIPATED, loops
 from .table_row import MINUS, NAME, NOTHING, TableRow
 
@@ -33,9 +33,6 @@ unit."""
 
 BETWEEN_MODES = re.compile(r"[,;/+&()]|\b(?:and|with|then|followed by)\b|(?<![a-z]{3})[-–—](?![a-z]{3})", re.IGNORECASE)
 """What separates failure modes: hyphens as well, as in R-TC, but not within words, as in toe-crushing."""
-
-DRIFTS = (1e-4, 1.0)
-"""Largest displacements of a curve, relative to the actuator's height, at and beyond which their unit is wrong."""
 
 DECIMAL = re.compile(r"\s*[-+−–]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 

@@ -22,6 +22,9 @@ LARGER = 1.1
 FARTHER = 1.02
 """The same ratio for the largest cycle of all, which a prediction follows to where the test ended."""
 
+DRIFTS = (1e-4, 1.0)
+"""Largest displacements of a curve, relative to the actuator's height, at and beyond which their unit is wrong."""
+
 CYCLIC, MONOTONIC = "cycl", "monoton"
 """Parts of the word by which a table describes the loading."""
 

@@ -6,7 +6,7 @@ from runningbond.scene import SceneError
 from runningbond.scene.plausibility import warnings
 
 from .formulas import pressed
-from .measured import NOISE, MeasuredWall
+from .measured import DRIFTS, NOISE, MeasuredWall
 from .modes import GROUPS, NAMED
 from .rig import RICHEST, Features, driven_path, load_in_name, scene_of, vertical_load
 from .scores import goes_to_both_sides, is_envelope
@@ -44,6 +44,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _load_of_name,
         _other_stone,
         _other_size,
+        _other_unit,
         _low_force,
         _turned,
         _reversed,
@@ -168,6 +169,19 @@ def _other_size(wall: MeasuredWall) -> list[str]:
     )
     what = f"not read: {unlike}; models take the numbers of {wall.scene_file.name} in brackets"
     return [what] if unlike else []
+
+
+def _other_unit(wall: MeasuredWall) -> list[str]:
+    """Displacements that cannot be in mm, of a wall whose row does not have the height that they are compared with."""
+    if wall.scene_file is None or not len(wall.curve) or wall.row.optional("H0") is not None:
+        return []
+    scene = scene_of(wall, Features())
+    (_, bottom), (_, top) = scene.blocks.extent(scene.masonry)
+    far = max(wall.reach)
+    what = (
+        f"the largest displacement of the record is {1e3 * far:.3g} mm, {far / (top - bottom):.2g} of the wall's height"
+    )
+    return [] if DRIFTS[0] < far / (top - bottom) < DRIFTS[1] else [f"{what}; it must be in mm"]
 
 
 def _entry(wall: MeasuredWall, column: str) -> float | None:

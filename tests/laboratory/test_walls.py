@@ -878,6 +878,20 @@ def test_record_of_one_side_of_a_cyclic_test_is_noted(kind: str, other: str, not
     assert notes_on(wall) == ([said] if noted else [])
 
 
+@pytest.mark.parametrize(("factor", "noted"), [(1.0, False), (1e-3, True), (1e3, True)])
+def test_displacements_in_another_unit_are_noted_without_the_height_of_the_actuator(
+    factor: float, noted: bool, tmp_path: Path
+) -> None:
+    curve = "displacement_mm,force_kN\n" + "".join(
+        f"{factor * x},{y}\n" for x, y in ((0, 0), (1, 30), (10, 61), (20, 60))
+    )
+    folder = write_folder(tmp_path / "own", "WS.175,61", heads='Test unit name,"Vmax,+ [kN]"', curve=curve)
+    write_toml(_tables(one(tmp_path / "row"), Features()), folder / "WS.175.toml")
+    (wall,) = read_folder(folder)
+    said = f"the largest displacement of the record is {20 * factor:.3g} mm, {factor / 60:.2g} of the wall's height"
+    assert notes_on(wall) == ([f"{said}; it must be in mm"] if noted else [])
+
+
 @pytest.mark.parametrize(
     ("cycles", "said"), [(12, []), (13, ["its path is 52 times as long as its largest displacement"])]
 )
