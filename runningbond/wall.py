@@ -87,7 +87,7 @@ class Wall:
         self._description: dict[str, Any] = as_in_a_file(description)
         self.folder = path_of("folder", folder).absolute()  # the current folder may change later
         self.scene  # noqa: B018 - built at once, so that errors are raised where the description is written
-        self._digests = {key: sha256(file.read_bytes()).digest() for key, file in self._files().items()}
+        self._digests = {key: _digest(file) for key, file in self._files().items()}
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any], folder: str | Path = ".") -> "Wall":
@@ -256,13 +256,14 @@ class Wall:
                 raise SceneError(name, f'is within a table; give it as {{"{full_name}": {abbreviated(value)}}}', value)
             _check_has_its_table(name, value)
         copy = Wall(merge_changes(self._description, [*nested_changes, tables]), self.folder)
-        self._check_unchanged(dict(self._files().items() & copy._files().items()))
+        shared = self._files().items() & copy._files().items()
+        self._check_unchanged({key: (file, copy._digests[key]) for key, file in shared})
         return copy
 
-    def _check_unchanged(self, files: dict[str, Path]) -> None:
-        """Refuse files by which other walls than this one would be described."""
-        for key, file in files.items():
-            if not file.is_file() or sha256(file.read_bytes()).digest() != self._digests[key]:
+    def _check_unchanged(self, files: Mapping[str, tuple[Path, bytes | None]]) -> None:
+        """Refuse files, by their keys with their digests, by which other walls than this one would be described."""
+        for key, (file, digest) in files.items():
+            if digest != self._digests[key]:
                 raise SceneError(key, "has changed since the wall was read from it; read the wall again", file.name)
 
     def _files(self) -> dict[str, Path]:
@@ -420,7 +421,7 @@ class Wall:
         from .results import write_atomically
         from .scene_writer import toml
 
-        self._check_unchanged(self._files())
+        self._check_unchanged({key: (file, _digest(file)) for key, file in self._files().items()})
         description, path = {"title": self.scene.title} | self.description, path_of("path", path)
         for name, file in self._files().items():
             *tables, key = name.split(".")
@@ -459,6 +460,11 @@ def read(wall: str | Path) -> Wall:
 
     path = find_scene(str(path_of("wall", wall)))
     return Wall({"title": path.stem, **read_description(path)}, path.parent)
+
+
+def _digest(file: Path) -> bytes | None:
+    """Digest of a file; None if there is none."""
+    return sha256(file.read_bytes()).digest() if file.is_file() else None
 
 
 def _check_has_its_table(name: str, value: object) -> None:
