@@ -23,6 +23,8 @@ def by_hand(scene: Scene) -> dict[str, float]:
         raise SceneError("beam.drive", "is missing; the formulas are of walls that are pushed at a beam")
     (left, bottom), (right, _) = scene.blocks.extent(scene.wall)
     length, force = right - left, pressed(scene)
+    if force < 0:
+        raise SceneError("beam.force", "lifts the wall; the formulas are of walls that are pressed from above")
     height = scene.blocks.centroid[beam.block, 1] - bottom if beam.drive.at is None else beam.drive.at
     # A beam that does not rotate causes double bending: it presses on one corner of the wall's top.
     lever = length / (2 * height) if beam.condition == "free" else length / height

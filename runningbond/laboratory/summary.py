@@ -9,7 +9,7 @@ from runningbond.compare.advice.experiment import ModelError, joints_of
 from runningbond.pictures.sheet import Sheet
 from runningbond.results.outcome import two_digits
 
-from .formulas import by_hand
+from .formulas import by_hand, pressed
 from .predictions import Prediction
 
 MEDIAN, WORST, MODES, FACTOR = 0.10, 0.20, 0.80, 1.5
@@ -99,7 +99,7 @@ def errors_by_hand(predictions: Sequence[Prediction]) -> dict[str, float]:
     return {
         name: float(min(abs(load / peak - 1) for load in by_hand(scene).values()))
         for name, (scene, peak) in peaks.items()
-        if peak
+        if peak and pressed(scene) >= 0
     }
 
 

@@ -332,6 +332,20 @@ def test_scene_that_only_other_models_cannot_read_does_not_stop_the_others(
     assert "pier" not in told.out
 
 
+def test_formulas_do_not_apply_to_a_wall_that_is_lifted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """They once rocked it at a negative force, 200 % below the test."""
+    folder, out = write_folder(tmp_path / "walls", "pier,,,,,,,,,,,44,,R"), tmp_path / "out"
+    tables = leaning(1)
+    tables["beam"]["force"] = [0, 2e4]
+    write_toml(tables, folder / "pier.toml")
+    arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking,by-hand,limit", "--json"]
+    assert command([*arguments, "--jobs", "1"]) == 0
+    rows = printed(capsys)["walls"]
+    assert [row["status"] for row in rows] == ["inapplicable", "inapplicable", "infeasible"]
+    assert {row["V_max"] for row in rows} == {None}
+    assert rows[0]["message"].startswith("beam.force: lifts the wall; the formulas are of walls that are pressed")
+
+
 def test_curves_without_a_wall_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Otherwise a curve with a typing error in its name would go unnoticed."""
     folder = write_folder(tmp_path / "walls", GRANITE)
