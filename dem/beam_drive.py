@@ -1,11 +1,12 @@
 """A beam driven along its path, from equilibrium to equilibrium."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from runningbond.dynamics.path_curve import BEAM_ANSWER, growth_left, other_way
+from runningbond.dynamics.path_curve import BEAM_ANSWER, BEAM_DIFFERS, growth_left, other_way
 from runningbond.scene import Array
 
 from .lead import StaticLead
@@ -94,3 +95,8 @@ class StaticBeamDrive(StaticLead):
     def other_way(self, curve: Array) -> str:
         """Note on the largest reaction in the other direction of a cyclic drive; empty for others."""
         return other_way(self.goals, curve)
+
+    def doubt(self, states: Sequence[StaticState], works: Array, tolerance: float) -> str:
+        """Note on a reaction that depends on how joints slid."""
+        until = self.answering(np.array([self.force(state) for state in states])) + 1
+        return self.friction_note(states[:until], works[:until], tolerance, BEAM_DIFFERS)

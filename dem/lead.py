@@ -3,10 +3,12 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
 
+from runningbond.dynamics.path_curve import friction_note
 from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Scene
 
@@ -112,6 +114,20 @@ class StaticLead(ABC):
     def doubt(self, states: Sequence[StaticState], works: Array, tolerance: float) -> str:
         """Note on an answer that may differ by more than its bracket, from works of the drive ``(n,)`` [J] so far."""
         return ""
+
+    def friction_note(self, states: Sequence[StaticState], works: Array, tolerance: float, differs: str) -> str:
+        """The note of `friction_note` for states on the way to an answer, and works of the drive ``(n,)`` [J]."""
+        count, equations = len(states[0].force), self.system.equilibrium
+        slid = (np.abs(after.plastic_slip - before.plastic_slip)[:count] for before, after in pairwise(states))
+        shear = (np.abs(after.force[:, 1] + before.force[:, 1]) / 2 for before, after in pairwise(states))
+        friction = sum(float(each @ way) for each, way in zip(shear, slid, strict=True))
+        friction *= equations.force_unit * self.system.length_unit
+        return friction_note(self.scene, friction, works, self.least_work, tolerance, differs=differs)
+
+    @property
+    def least_work(self) -> float:
+        """Work [J] below which that of the drive need not be accurate relative to itself."""
+        return 0.0
 
     def has_come_free(self, state: StaticState) -> bool:
         """Whether supports that move carry nothing."""

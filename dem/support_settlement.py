@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
-from runningbond.dynamics.path_curve import LITTLE, SUPPORT_ANSWER, formed, friction_note, shedding
+from runningbond.dynamics.path_curve import LITTLE, SUPPORT_ANSWER, SUPPORT_DIFFERS, formed, shedding
 from runningbond.limit.kinematics import control_row
 from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.results import Supports
@@ -83,14 +82,14 @@ class StaticSettlement(StaticLead):
         falls, changes = shedding(curve)
         return f"the support still {changes} where its settlement ends, it bears", falls
 
+    @property
+    def least_work(self) -> float:
+        """Work [J] below which that of the supports need not be accurate relative to itself."""
+        return LITTLE * abs(self.joule)
+
     def doubt(self, states: Sequence[StaticState], works: Array, tolerance: float) -> str:
         """Note on a share that depends on how joints slid."""
-        count, equations = len(states[0].force), self.system.equilibrium
-        slid = (np.abs(after.plastic_slip - before.plastic_slip)[:count] for before, after in pairwise(states))
-        shear = (np.abs(after.force[:, 1] + before.force[:, 1]) / 2 for before, after in pairwise(states))
-        friction = sum(float(each @ way) for each, way in zip(shear, slid, strict=True))
-        unit = equations.force_unit * self.system.length_unit
-        return friction_note(friction * unit, works, LITTLE * abs(self.joule), tolerance)
+        return self.friction_note(states, works, tolerance, SUPPORT_DIFFERS)
 
     def has_come_free(self, state: StaticState) -> bool:
         """Whether supports that move carry nothing."""

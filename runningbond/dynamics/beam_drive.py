@@ -9,7 +9,7 @@ from runningbond.results.outcome import number
 from runningbond.scene import Array
 
 from .lead import RAMP, ROWS, STRIDE, Lead, pace
-from .path_curve import BEAM_ANSWER, growth_left, other_way
+from .path_curve import BEAM_ANSWER, BEAM_DIFFERS, growth_left, other_way
 from .peaks import Peaks
 from .state import State
 from .toes import Toes
@@ -72,9 +72,12 @@ class BeamDrive(Lead):
         return self._growth_along_slope(traverse) if self.is_small else 0.0
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
-        """Note on a force that would grow by more than a tolerance on a longer path, at finite displacements."""
+        """Note on a force that depends on how joints slid, at small displacements, or grows on a longer path."""
+        if self.is_small:
+            largest = int(np.argmax([row.force for row in traverse.rows]))
+            return self.friction_note(traverse, tolerance, BEAM_DIFFERS, until=largest + 1)
         grown = traverse.answer + self._growth_along_slope(traverse)
-        if self.is_small or grown <= (1 + tolerance) * traverse.answer:
+        if grown <= (1 + tolerance) * traverse.answer:
             return ""
         return f"still rising at the end, along its slope to {number(grown)} on a path twice as long"
 

@@ -21,6 +21,7 @@ from .dead_load import fall_under_dead_load
 from .inertia import beam_note
 from .led import UNACCOUNTED, LedWall, collapse_of_led
 from .load_stepping import LoadSteps, load_steps, smallest_width
+from .path_curve import friction_note
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
@@ -274,13 +275,19 @@ def _judge(
     wide, beyond = "", ", and the last step beyond it, by which joints that break may overshoot" if overshoot else ""
     if upper - result.lower > tolerance * upper:
         wide = "; wider than the tolerance because loads as small as their difference would not be seen at rest"
-    return replace(
-        outcome,
-        status="collapse",
-        multiplier=(result.lower + upper) / 2,
-        message=f"largest load at rest and smallest in collapse{beyond}, small displacements; "
-        f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
+    message = (
+        f"largest load at rest and smallest in collapse{beyond}, small displacements; "
+        f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}"
     )
+    message = joined(message, _doubt(scene, run, result.rests[0][1], result.borne, tolerance))
+    return replace(outcome, status="collapse", multiplier=(result.lower + upper) / 2, message=message)
+
+
+def _doubt(scene: Scene, run: Run, loaded: State, borne: State, tolerance: float) -> str:
+    """Note on a load that depends on how joints slid after a wall had rested under its dead load."""
+    friction = run.ledger(borne).friction - run.ledger(loaded).friction
+    live = np.array([state.external - run.dead_work(state) for state in (loaded, borne)])
+    return friction_note(scene, friction, live, 0.0, tolerance, differs="have another collapse load")
 
 
 def _unaccounted(run: Run, result: LoadSteps, fallen: State) -> float:

@@ -11,7 +11,7 @@ from runningbond.joints import JointPoints, wall_caps
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria
-from .path_curve import LITTLE, LOSS, failing, late_growth
+from .path_curve import LITTLE, LOSS, failing, friction_note, late_growth
 from .peaks import Peaks
 from .run import Observer, Run
 from .state import State
@@ -157,6 +157,12 @@ class Lead(ABC):
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on an answer that may still change by more than a tolerance although a mechanism counts as formed."""
         return ""
+
+    def friction_note(self, traverse: Traverse, tolerance: float, differs: str, *, until: int | None = None) -> str:
+        """The note of `friction_note` for a traverse; its answer is in the last of its rows `until` a number."""
+        friction = self.run.ledger(traverse.best).friction - self.run.ledger(self.start).friction
+        works = np.array([row.works[1] for row in traverse.rows[:until]])
+        return friction_note(self.scene, friction, works, self.least_work, tolerance, differs=differs)
 
     def before(self, curve: Array) -> str:
         """Note on the part of a curve ``(n, 2)`` before the answer; may be empty."""

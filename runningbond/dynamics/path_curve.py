@@ -3,10 +3,12 @@
 import numpy as np
 
 from runningbond.results.outcome import number
-from runningbond.scene import Array
+from runningbond.scene import Array, Scene
 
 BEAM_ANSWER = "largest reaction of the drive along its path"
+BEAM_DIFFERS = "give another reaction"
 SUPPORT_ANSWER = "share of the dead load on the support"
+SUPPORT_DIFFERS = "leave another share"
 
 LITTLE = 0.01
 """Fraction of the dead load below which a reaction need not be accurate relative to itself."""
@@ -36,25 +38,31 @@ OVERSHOOT = 0.05
 """Displacement to the other side, relative to the largest one, up to which a path only returns to its start."""
 
 
-SLIDES = "joints slide: another path, or forces at other points along the joints, may leave another share"
-"""Note on a share that friction leaves to the path: its bracket only says how closely this one was followed."""
+SLIDES = "joints slide: another path, or forces at other points along the joints, may"
+"""Beginning of a note on an answer that friction leaves to the path: its bracket only says how closely that was
+followed."""
 
 
-def friction_note(friction: float, works: Array, least: float, tolerance: float) -> str:
-    """Note on a share of the dead load that depends on how joints slid, else empty.
+def friction_note(scene: Scene, friction: float, works: Array, least: float, tolerance: float, *, differs: str) -> str:
+    """Note on an answer that depends on how joints slid, else empty, as for walls whose forces balance alone gives.
 
     Parameters
     ----------
+    scene
+        The wall.
     friction
         Work of friction along the path [J].
     works : (n,) float
-        Work of the supports up to each row of the path [J].
+        Work of what drives the wall up to each row of the path [J].
     least
-        Work [J] below which that of the supports need not be accurate relative to itself.
+        Work [J] below which that of the drive need not be accurate relative to itself.
     tolerance
-        Part of the work of the supports up to which the work of friction makes no difference.
+        Part of the work of the drive up to which the work of friction makes no difference.
+    differs
+        What another path may do, e.g. ``"leave another share"``.
     """
-    return SLIDES if friction > tolerance * max(float(np.ptp(works)), least) else ""
+    matters = friction > tolerance * max(float(np.ptp(works)), least) and not scene.is_determinate
+    return f"{SLIDES} {differs}" if matters else ""
 
 
 def goes_both_ways(goals: Array) -> bool:

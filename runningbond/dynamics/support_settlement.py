@@ -14,7 +14,7 @@ from runningbond.scene import Array
 from .collapse import hold_load
 from .growth import NEARLY_AT_REST
 from .lead import RAMP, Lead, pace
-from .path_curve import LITTLE, SUPPORT_ANSWER, formed, friction_note, shedding
+from .path_curve import LITTLE, SUPPORT_ANSWER, SUPPORT_DIFFERS, formed, shedding
 from .state import State
 from .traverse import Place, Traverse, TraverseRow
 
@@ -65,8 +65,7 @@ class SupportSettlement(Lead):
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on a share that depends on how joints slid."""
-        friction = self.run.ledger(traverse.best).friction - self.run.ledger(self.start).friction
-        return friction_note(friction, np.array([row.works[1] for row in traverse.rows]), self.least_work, tolerance)
+        return self.friction_note(traverse, tolerance, SUPPORT_DIFFERS)
 
     def fall(self, traverse: Traverse) -> str:
         """Note on where the wall falls."""

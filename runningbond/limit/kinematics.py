@@ -105,21 +105,10 @@ def sliding_dilates(scene: Scene, motion: Array) -> bool:
 
     Frictionless joints never do. If no other joint does either, those that slide have separated anyway and carry no
     friction: forces and mechanism then prove a collapse at their load for friction without dilatancy, too. There may be
-    others at smaller loads, unless `is_determinate`.
+    others at smaller loads, unless the scene `is_determinate`.
     """
     points = wall_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
     opening, slip = jump.opening @ motion.ravel(), np.abs(jump.slip @ motion.ravel())
     friction = wall_strength(scene, points).friction
     return bool(((friction > 0) & (slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())
-
-
-def is_determinate(scene: Scene) -> bool:
-    """Whether the balance of blocks alone gives the resultant in every joint, as in a stack.
-
-    These forces change linearly with λ. In a wall that stands without live load, none of their limits is then reached
-    before all forces that balance a larger load are inadmissible: every collapse is at the same load. In other walls
-    forces that balance smaller loads may be at their limits as well, with true friction also on another mechanism.
-    """
-    joints = (~scene.fixed[scene.joints.block]).any(axis=1).sum()
-    return bool(joints == (~scene.fixed).sum()) and not (len(scene.pins) or len(scene.late_pins) or len(scene.ties))

@@ -247,6 +247,18 @@ class Scene:
         """Whether displacements of a support or of the beam are prescribed, in place of loads."""
         return self.settlement is not None or len(self.drive_path) > 0
 
+    @property
+    def is_determinate(self) -> bool:
+        """Whether the balance of blocks alone gives the resultant in every joint, as in a stack.
+
+        These forces change linearly with λ. In a wall that stands without live load, none of their limits is then
+        reached before all forces that balance a larger load are inadmissible: every collapse is at the same load. In
+        other walls forces that balance smaller loads may be at their limits as well, with true friction also on another
+        mechanism.
+        """
+        joints = (~self.fixed[self.joints.block]).any(axis=1).sum()
+        return bool(joints == (~self.fixed).sum()) and not (len(self.pins) or len(self.late_pins) or len(self.ties))
+
     @cached_property
     def support_motion(self) -> Array:
         """Prescribed motion of supports at λ = 1, ``(nb, 3)``: of each block's centroid [m], and its rotation [rad]."""

@@ -23,7 +23,7 @@ from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
-from runningbond.limit.kinematics import is_determinate, sliding_dilates
+from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS
 from runningbond.models.costs import estimate, pace
 from runningbond.models.second_opinion import asks_others
@@ -388,7 +388,7 @@ def test_toppling_without_sliding_excludes_no_smaller_load_of_a_bonded_wall() ->
     assert bound.upper is not None
     assert bound.upper == pytest.approx(0.8 / 0.35, rel=1e-6)
     assert not sliding_dilates(scene, bound.motion)
-    assert not is_determinate(scene)
+    assert not scene.is_determinate
     advice = advise(scene)
     assert climbed(advice) == ["homog", "limit", "limit-nonassociated", "dem-static"]
     found = advice.outcome()
@@ -412,7 +412,7 @@ def test_toppling_without_sliding_excludes_no_smaller_load_of_a_bonded_wall() ->
 def test_forces_follow_from_balance_in_stacks_only(
     pattern: list[list[float]], changes: dict[str, Any], determinate: bool
 ) -> None:
-    assert is_determinate(courses(pattern, **changes)) == determinate
+    assert courses(pattern, **changes).is_determinate == determinate
 
 
 def test_sliding_block_is_not_proved_by_limit_analysis() -> None:

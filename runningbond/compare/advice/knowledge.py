@@ -8,7 +8,7 @@ import numpy as np
 
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement
-from runningbond.limit.kinematics import is_determinate, sliding_dilates
+from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.models.costs import Estimate, cracks_anywhere, estimate, pace
 from runningbond.results import Outcome
@@ -99,7 +99,7 @@ class Knowledge:
 
     def _is_only_load(self, bound: Outcome) -> bool:
         """Whether a collapse without sliding, which needs no dilatancy, excludes collapses at smaller loads."""
-        return is_determinate(self.scene) and not sliding_dilates(self.scene, bound.motion)
+        return self.scene.is_determinate and not sliding_dilates(self.scene, bound.motion)
 
     @property
     def histories(self) -> list[Model]:
