@@ -13,6 +13,9 @@ from .model import Model
 FAR_MOTION = 0.02
 """Limit of small motions, per smaller side of the wall: toppling resistance falls by this share."""
 
+SAME_LOAD = 1e-6
+"""Relative difference of λ below which loads of a path are one load: on a plateau they drift by rounding."""
+
 
 def moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
     """Note for a wall that has moved beyond small displacements at the largest load at which it is at rest.
@@ -28,7 +31,9 @@ def moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) 
         scene = scene.with_rigid_blocks()
     gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
     moved, load = outcome.curve.T
-    rests = np.abs(moved[load == outcome.lower]) / _smaller_side(scene)
+    largest = outcome.lower or 0.0
+    reached = np.abs(load - largest) <= SAME_LOAD * abs(largest)  # on a plateau it is borne all along the way
+    rests = np.abs(moved[reached]) / _smaller_side(scene)
     moved = rests[0] if len(rests) else 0.0
     height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
     soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"

@@ -29,7 +29,7 @@ from runningbond.models.costs import estimate, pace
 from runningbond.models.second_opinion import asks_others
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness
+from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness, scene_from_dict
 from tests.at_length import at_length
 from tests.walls import content, courses, panel, write_toml
 
@@ -677,6 +677,34 @@ def test_leaning_stack_is_followed_at_finite_displacements() -> None:
     assert advice.known.bound is not None
     assert advice.known.bound == pytest.approx(0.4 / (4 * 0.175), rel=1e-6)
     assert 0.9 * advice.known.bound < found.upper < advice.known.bound
+
+
+@pytest.mark.parametrize(("young", "far"), [(2e11, False), (2e9, True)])
+def test_piers_on_soft_ties_are_not_said_to_move_little(young: float, far: bool) -> None:
+    """Certified loads count the ties as yielding: displacements up to there are those of the history that agrees.
+
+    A pier of 0.5 × 2 m and W = 20 kN turns about its toe until the tie, of 20 kN at its head, yields.
+    """
+    width, height, length, area, most, weight = 0.5, 2.0, 3.0, 1e-4, 2e4, 2e4
+    tie = {"from": [-length, height], "to": [0.0, height], "area": area, "young": young, "yield": most}
+    pier = {"outlines": [[[0, 0], [width, 0], [width, height], [0, height]]], "thickness": 1.0}
+    joint = {"friction": 5.0, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    tables = {"wall": pier, "block": {"density": 2000.0}, "joint": joint, "support": {"kind": "base"}, "tie": [tie]}
+    scene = scene_from_dict({**tables, "load": {"gravity": 10.0, "live": {"kind": "lateral"}}})
+    advice = advise(scene)
+    turn = np.linspace(0.0, 0.2, 2001)
+    head = np.array([height * np.sin(turn) - width * np.cos(turn), height * np.cos(turn) + width * np.sin(turn)])
+    along = head - np.array([[-length - width], [height]])  # from the anchor, both seen from the toe
+    long = np.hypot(*along)
+    force = -np.minimum(most, young * area * (long / length - 1)) * along / long
+    tilted = np.arctan2(width, height) - turn
+    own = weight * np.hypot(width, height) / 2
+    loads = (own * np.sin(tilted) + head[0] * force[1] - head[1] * force[0]) / (own * np.cos(tilted))
+    peak = int(loads.argmax())
+    exact = float(loads[peak]) if far else 2.25  # (W b / 2 + F h) / (W h / 2)
+    assert advice.known.displacement == pytest.approx(turn[peak] * height / scene.block_size, rel=0.1)
+    assert climbed(advice)[-1] == ("dem-dynamic, finite" if far else "dem-static")
+    assert advice.outcome().multiplier == pytest.approx(exact, rel=0.01)
 
 
 @pytest.mark.parametrize("outcome", [None, Outcome("", HISTORY.name, "undecided")])

@@ -55,6 +55,14 @@ def test_motion_at_the_largest_load_at_rest_counts(sense: float) -> None:
     assert "2 % of its smaller side" in note(1.001 * FAR_MOTION * SMALLER)
 
 
+def test_motion_counts_up_to_where_the_largest_load_is_first_reached() -> None:
+    """Along a plateau, as of a pier whose ties yield while it turns, λ drifts by rounding: this is no softness."""
+    curve = [[0.0, 0.0], [1e-4, 0.3 * (1 - 1e-9)], [0.1, 0.3 * (1 - 1e-11)], [0.3, 0.3], [1.0, 0.3]]
+    assert moves(STATIC, panel(joint=STIFF), collapsed(curve), None) == ""
+    curve[1][1] = curve[2][1] = 0.299
+    assert "has moved by 42 % of its smaller side" in moves(STATIC, panel(joint=STIFF), collapsed(curve), None)
+
+
 def test_without_rest_on_the_path_no_motion_is_told() -> None:
     assert moves(STATIC, panel(joint=STIFF), collapsed([[0.0, 0.0], [1.0, 0.31]]), None) == ""
 

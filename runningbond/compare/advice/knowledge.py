@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from runningbond.joints.stiffness import block_compliance
-from runningbond.limit import elastic_displacement
+from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.models.costs import Estimate, cracks_anywhere, estimate, pace
@@ -53,6 +53,7 @@ class Knowledge:
     bound: float | None = None  # associated limit load: an upper bound at small displacements
     evidence: Evidence = ""  # kind of evidence for the answer
     answer: Outcome | None = None  # outcome with the bracket of the answer
+    followed: Outcome | None = None  # the last history that collapsed at small displacements
     lowest: float | None = None  # smallest collapse load by a proof, a certificate or a history
     draws: int = 0  # number of histories that the last model followed up to collapse
     contradicted: bool = False  # whether a history and narrow certified loads together span more than the tolerance
@@ -94,7 +95,7 @@ class Knowledge:
         else:
             # If paths with several load steps were followed, `upper` is the highest of their collapse loads.
             falls = [each.upper if each.fall is None else each.fall for each in draws or (outcome,) if each.upper]
-            self.draws = max(1, len(falls))
+            self.draws, self.followed = max(1, len(falls)), outcome
             self._follow(outcome, min(falls, default=outcome.upper))
 
     def _is_only_load(self, bound: Outcome) -> bool:
@@ -156,14 +157,18 @@ class Knowledge:
 
     @property
     def displacement(self) -> float | None:
-        """Displacement under the live load up to collapse, from the curve or elastic [block sizes]."""
+        """Displacement [block sizes] under the live load up to collapse, from the curve, or elastic and from ties.
+
+        Certified loads have no curve: it is that of the history that agrees with them, if one was followed.
+        """
         if self.answer is None or self.answer.lower is None:
             return None
-        if not len(self.answer.curve):
+        path = self.answer if len(self.answer.curve) else self.followed
+        if path is None or path.lower is None or not len(path.curve):
             moved = elastic_displacement(self.scene, self.answer.lower)
-            return None if moved is None else moved / self.scene.block_size
-        displacement, multiplier = self.answer.curve.T
-        last = int(np.argmin(np.abs(multiplier - self.answer.lower)))
+            return None if moved is None else (moved + hanging_displacement(self.scene)) / self.scene.block_size
+        displacement, multiplier = path.curve.T
+        last = int(np.argmin(np.abs(multiplier - path.lower)))
         return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)
 
     def estimate(self, model: Model, draws: int = 1) -> Estimate:
