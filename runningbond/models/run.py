@@ -10,6 +10,7 @@ from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
 
 from .corners import left_out_corner
+from .edges import rolls
 from .model import Model
 from .notes import keeps_strength, led_far, left_out, moves, tilted_with_the_ground
 from .registry import MODELS, TOLERANCE, check_parameters, check_tolerance, find_model
@@ -72,6 +73,7 @@ def run_model(
         "" if finite else moves(model, scene, outcome, parameters.get("collapse")),
         "" if finite else led_far(model, scene, outcome),
         "" if finite else left_out_corner(model, scene, outcome),
+        rolls(scene, outcome, tolerance) if finite else "",
         keeps_strength(model, scene),
         left_out(model, scene, finite),
     ]

@@ -1,0 +1,63 @@
+"""Pushed walls whose joints bear at their ends: what joints along their whole length would bear."""
+
+import numpy as np
+import pytest
+
+from dem.dynamic import dem_dynamic
+from runningbond.limit import limit
+from runningbond.models import run_model
+from runningbond.models.edges import load_of_beds, rolls
+from runningbond.scene import Scene
+from tests.walls import courses
+
+WIDTH, HEIGHT, THICKNESS = 0.5, 4.0, 0.3
+
+
+def tower(stiffness: float, rows: int = 1, **joint: float) -> Scene:
+    """A slender tower of blocks on soft or stiff joints."""
+    joints = {"friction": 0.8, "normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness} | joint
+    return courses([[1]] * rows, WIDTH, HEIGHT / rows, wall__thickness=THICKNESS, joint=joints)
+
+
+def on_a_bed(scene: Scene, stiffness: float) -> float:
+    """Largest λ of a block on a bed of springs without tension, as it leans: (b / 2 − 3 e / 2) / (h / 2)."""
+    weight = float(scene.mass[0]) * 9.81
+    e = (2 * weight * HEIGHT / (9 * stiffness * THICKNESS)) ** (1 / 3)
+    return float((WIDTH / 2 - 1.5 * e) / (HEIGHT / 2))
+
+
+@pytest.mark.parametrize("stiffness", [1e9, 1e10])
+def test_load_of_a_block_on_a_bed_is_told(stiffness: float) -> None:
+    """Points at the ends of its joint give the rigid block's b / h, nine points along it the bed's load."""
+    scene = tower(stiffness)
+    outcome = dem_dynamic(scene, displacements="finite")
+    exact = on_a_bed(scene, stiffness)
+    assert outcome.multiplier == pytest.approx(WIDTH / HEIGHT, rel=0.01)
+    assert load_of_beds(scene, outcome) == pytest.approx(exact, rel=0.01)
+    spread = dem_dynamic(tower(stiffness, compressive_strength=1e12), displacements="finite")
+    assert spread.multiplier == pytest.approx(exact, rel=0.015)
+    assert f"it bears about {load_of_beds(scene, outcome):.4f}" in rolls(scene, outcome, 0.01)
+    assert rolls(scene, outcome, 1.1 * (1 - exact * HEIGHT / WIDTH)) == ""
+
+
+def test_stiff_joints_and_joints_with_points_along_them_are_not_told() -> None:
+    for scene in (tower(1e14), tower(1e9, compressive_strength=1e12)):
+        assert "roll onto their edges" not in run_model("dem-dynamic", scene, displacements="finite").message
+    assert "roll onto their edges" in run_model("dem-dynamic", tower(1e9), displacements="finite").message
+    assert "roll onto their edges" not in run_model("dem-dynamic", tower(1e9)).message
+
+
+def test_every_joint_that_turns_counts() -> None:
+    """Two blocks that turn as one on the ground: the joint between them stays closed and does not count."""
+    scene = tower(1e9, rows=2)
+    outcome = dem_dynamic(scene, displacements="finite")
+    whole = tower(1e9)
+    assert load_of_beds(scene, outcome) == pytest.approx(on_a_bed(whole, 1e9), rel=0.01)
+
+
+def test_no_load_without_mechanism_or_peak() -> None:
+    scene = tower(1e9)
+    assert load_of_beds(scene, limit(scene)) is None
+    short = dem_dynamic(scene, displacements="finite", distance=0.002)
+    assert np.abs(short.curve[:, 0]).max() < 0.01
+    assert load_of_beds(scene, short) is None
