@@ -6,7 +6,7 @@ from runningbond.limit import elastic_displacement
 from runningbond.results import Outcome
 from runningbond.results.outcome import joined, two_digits
 from runningbond.scene import Scene, SceneError
-from runningbond.scene.mass_loads import Tilt
+from runningbond.scene.mass_loads import Body, Lateral, Tilt
 
 from .model import Model
 
@@ -74,6 +74,16 @@ def tilted_with_the_ground(scene: Scene) -> str:
     if not tilts or not len(scene.dead_forces.force):
         return ""
     return "dead loads at points and along lines turn with the ground, as jacks do and weights do not"
+
+
+def without_mass(scene: Scene) -> str:
+    """Note for dead loads that weigh on a wall, as floors do, if only blocks are pushed by their mass."""
+    live, gravity = scene.load.live, np.array(scene.load.gravity)
+    inertia = scene.history is not None or (bool(live) and all(isinstance(load, Lateral | Body) for load in live))
+    if not inertia or not any((load.forces(scene).force @ gravity > 0).any() for load in scene.load.dead):
+        return ""
+    pushed = "the ground's motion does not move" if scene.history else "λ does not push"
+    return f"dead loads at points and along lines have no mass: {pushed} floors that weigh so much"
 
 
 def keeps_strength(model: Model, scene: Scene) -> str:

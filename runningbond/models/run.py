@@ -12,7 +12,7 @@ from runningbond.scene.history import FACTOR
 from .corners import left_out_corner
 from .edges import rolls
 from .model import Model
-from .notes import keeps_strength, led_far, left_out, moves, tilted_with_the_ground
+from .notes import keeps_strength, led_far, left_out, moves, tilted_with_the_ground, without_mass
 from .registry import MODELS, TOLERANCE, check_parameters, check_tolerance, find_model
 from .settings import check_observer, check_response_settings, check_settings
 
@@ -79,7 +79,7 @@ def run_model(
     ]
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
-        notes += [tilted_with_the_ground(scene)]
+        notes += [tilted_with_the_ground(scene), without_mass(scene)]
     return replace(outcome, model=model.name, message=joined(*notes))
 
 
@@ -124,5 +124,5 @@ def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings:
 
     response = follow(scene, scale, **settings)
     impacts = impact_note(scene) if len(response.time) else ""
-    notes = impacts, beam_note(scene), left_out(find_model(model), scene)
+    notes = impacts, beam_note(scene), without_mass(scene), left_out(find_model(model), scene)
     return replace(response, message=joined(response.message, *notes))

@@ -8,12 +8,12 @@ import pytest
 
 from dem.static import FALLEN
 from runningbond.limit import elastic_displacement
-from runningbond.models import MODELS
+from runningbond.models import MODELS, run_model
 from runningbond.models.far import going_far
-from runningbond.models.notes import FAR_MOTION, led_far, left_out, moves
+from runningbond.models.notes import FAR_MOTION, led_far, left_out, moves, without_mass
 from runningbond.results import Outcome
 from runningbond.scene import Scene, scene_from_dict
-from tests.walls import content, panel
+from tests.walls import content, courses, panel
 
 STATIC = MODELS["dem-static"]
 STIFF = {"friction": 0.6, "normal_stiffness": 1e13, "shear_stiffness": 1e13}
@@ -134,3 +134,33 @@ def test_keys_that_a_model_does_not_read_are_listed() -> None:
     soft = panel(joint=STIFF, block__young=1e6, block__poisson=0.2)
     assert left_out(MODELS["dem-dynamic"], soft) == "not taken into account: block.young, block.poisson"
     assert left_out(MODELS["fem"], soft) == ""
+
+
+def test_floors_that_the_lateral_load_does_not_push_are_told() -> None:
+    """A block under a floor of its own weight topples at 2 b / h, or at 2 b / 3 h if the floor is pushed as well."""
+    width, height = 0.5, 2.0
+    weight = 1800.0 * 9.81 * width * height * 0.12
+    floor = {"kind": "point", "at": [width / 2, height], "force": [0.0, -weight]}
+    sideways = {"kind": "point", "at": [width / 2, height], "force": [weight, 0.0]}
+    lateral = {"kind": "lateral"}
+
+    def loaded(live: Any, **dead: Any) -> Scene:
+        return courses([[1]], width, height, joint={"friction": 2.0}, load={"gravity": 9.81, "live": live, **dead})
+
+    told = "dead loads at points and along lines have no mass: λ does not push floors that weigh so much"
+    alone, both = loaded(lateral, dead=floor), loaded([lateral, sideways], dead=floor)
+    for scene, says, exact in ((alone, True, 2 * width / height), (both, False, 2 * width / height / 3)):
+        outcome = run_model("limit", scene)
+        assert outcome.multiplier == pytest.approx(exact, rel=1e-6)
+        assert outcome.message.endswith(told) == says
+    assert without_mass(loaded(lateral)) == ""
+    assert without_mass(loaded(lateral, dead=sideways)) == ""  # it does not weigh on the wall
+
+
+def test_floors_that_the_ground_does_not_move_are_told() -> None:
+    pulse = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 0.5}, "quantity": "acceleration"}
+    floor = {"kind": "point", "at": [0.25, 2.0], "force": [0.0, -1000.0]}
+    joint = {"friction": 2.0, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    for dead in ({}, {"dead": floor}):
+        scene = courses([[1]], 0.5, 2.0, joint=joint, load={"gravity": 9.81, "history": pulse, **dead})
+        assert ("the ground's motion does not move floors" in without_mass(scene)) == bool(dead)
