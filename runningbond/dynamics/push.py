@@ -336,7 +336,10 @@ class Push(Lead):
             power = min(most, power / max(went / full_way, 1 / POWER_GROWTH))
         else:
             traverse.verdict = "undecided"
-        traverse.late_drag = max(drags[self._falling(traverse.curve[1:])], default=0.0)
+        # Where a wall snaps, the work of its fall is damped, many times that of the load: no more than λ can be lost.
+        loads = traverse.curve[1:]
+        lost = np.minimum(drags, np.maximum(loads[:, 1], 0.0))[self._falling(loads)]
+        traverse.late_drag = float(lost.max(initial=0.0))
         self.conclude(traverse, peaks, seen)
         # The drag was seen in place of the inertia, which is no part of a push whose power is kept.
         traverse.drag, traverse.inertia = traverse.inertia, 0.0

@@ -25,7 +25,7 @@ from runningbond.limit.kinematics import jump_operator
 from runningbond.pictures.curve import draw_curve
 from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Array, Scene, SceneError, scene_from_dict
 from tests.at_length import at_length
 from tests.dynamics.test_led import block, brackets
 from tests.fem_interface.walls import MORTAR
@@ -609,3 +609,26 @@ def test_distance_is_refused_for_settlement() -> None:
     live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}
     with pytest.raises(SceneError, match="distance = 0.1: goes with"):
         dem_dynamic(block(load__live=live), displacements="finite", distance=0.1)
+
+
+def test_damping_of_a_wall_that_snaps_takes_no_more_than_the_load() -> None:
+    """An arch on piers with a soft tie snaps through: the work of its fall is damped, which is no part of its load."""
+    corners = [np.exp(1j * np.pi * k / 12) for k in range(13)]
+    rings = [[1.3 + 2j + r * corner for corner in corners] for r in (1.0, 1.25)]
+    voussoirs = [[rings[0][k], rings[1][k], rings[1][k + 1], rings[0][k + 1]] for k in range(12)]
+    piers = [[[x, 0], [x + 0.6, 0], [x + 0.6, 2], [x, 2]] for x in (-0.3, 2.3)]
+    outlines = piers + [[[z.real, z.imag] for z in each] for each in voussoirs]
+    tie = {"from": [0.3, 1.9], "to": [2.3, 1.9], "area": 1e-4, "young": 1e9, "yield": 4000.0}
+    tables = {
+        "wall": {"outlines": outlines, "thickness": 0.5},
+        "block": {"density": 2000.0},
+        "joint": {"friction": 0.7, "normal_stiffness": 1e10, "shear_stiffness": 4e9},
+        "support": {"kind": "base"},
+        "load": {"gravity": 10.0, "live": {"kind": "point", "at": [1.3, 3.25], "force": [0.0, -1.0]}},
+        "tie": [tie],
+    }
+    outcome = dem_dynamic(scene_from_dict(tables), 0.05, displacements="finite", distance=0.2378)
+    assert outcome.status == "collapse"
+    damped = re.search(r"damping takes up to (\S+) %", outcome.message)
+    assert damped is not None
+    assert float(damped[1]) <= 100.0
