@@ -16,7 +16,7 @@ from runningbond.scene import Array, SceneError
 from runningbond.scene.ranges import suggestion
 
 from .measured import CYCLIC, DRIFTS, MONOTONIC, NOISE, MeasuredWall
-from .scores import LEAST_DISSIPATED, loops
+from .scores import LEAST_DISSIPATED, UNLOADED, loops
 from .table_row import MINUS, NAME, NOTHING, TableRow
 
 DATA = Path(__file__).parent / "data"
@@ -261,28 +261,37 @@ def _ends_at_rest(curve: Array) -> bool:
 def _from_rest(curve: Array) -> Array:
     """A curve to both sides; if it is an envelope, as two parts that go outward from rest.
 
-    An envelope is a record without unloading: its forces are to the sides of its displacements, and its points to each
-    side only go outward, or only inward from where they do not start at rest. The side of its first point comes first,
-    but if it leads from one side straight to the other, the positive one.
+    An envelope is a record without unloading: its forces are to the sides of its displacements, none are at rest, and
+    its points to each side only go outward, or only inward from where they do not start at rest. Small forces against
+    this are noise and left out; points that step back by noise are put in order. The side of its first point comes
+    first, but if it leads from one side straight to the other, the positive one.
     """
     known = curve[~np.isnan(curve[:, 0])]
     moved, force = known.T
-    if (moved * force < 0).any():
+    if (np.abs(force[moved * force <= 0]) > NOISE * np.abs(force).max()).any():
         return curve
+    back = UNLOADED * float(np.abs(moved).max())
     parts = list[Array]()
     for own in (curve[:, 0] > 0, curve[:, 0] < 0):
-        side, first = curve[own], int(np.argmax(own))
+        side, first = curve[own & (curve[:, 0] * curve[:, 1] >= 0)], int(np.argmax(own))
+        if not len(side):
+            return curve
         is_from_rest = first > 0 and curve[first - 1, 0] == 0
         if abs(side[0, 0]) > abs(side[-1, 0]) and not is_from_rest:
             side = side[::-1]
-        if (np.diff(np.abs(side[:, 0])) < 0).any():
+        if not _only_rises(np.abs(side[:, 0]), back):
             return curve
-        parts.append(side)
-    is_straight = (np.diff(moved) >= 0).all() or (np.diff(moved) <= 0).all()
+        parts.append(side[np.argsort(np.abs(side[:, 0]), kind="stable")])
+    is_straight = _only_rises(moved, back) or _only_rises(-moved, back)
     if not is_straight and moved[moved != 0][0] < 0:
         parts.reverse()
-    rest = known[moved == 0][:1]
+    rest = known[moved == 0][:1] * 0
     return np.concatenate([rest, parts[0], np.full((1, 2), np.nan), rest, parts[1]])
+
+
+def _only_rises(values: Array, back: float) -> bool:
+    """Whether values ``(n,)`` never fall below an earlier one by more than `back`."""
+    return bool((values >= np.maximum.accumulate(values) - back).all())
 
 
 def _check_cycles(wall: MeasuredWall) -> None:

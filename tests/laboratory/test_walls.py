@@ -21,7 +21,7 @@ from runningbond.laboratory.modes import measured_modes
 from runningbond.laboratory.notes import notes_on
 from runningbond.laboratory.predictions import scenes_of
 from runningbond.laboratory.rig import Features, _tables, scene_of, vertical_load
-from runningbond.laboratory.scores import marks_of
+from runningbond.laboratory.scores import loops, marks_of
 from runningbond.laboratory.stones import STONES
 from runningbond.limit import limit
 from runningbond.models import run_model
@@ -988,13 +988,17 @@ RIGHT, LEFT = ENVELOPE[3:], ENVELOPE[:4]
         [*RIGHT[::-1], None, *LEFT],
         [*RIGHT[::-1], None, *LEFT[::-1]],
         [RIGHT[0], RIGHT[1], LEFT[2], RIGHT[2], LEFT[1], RIGHT[3], LEFT[0]],
+        [*LEFT[:2], (-10.1, -58), LEFT[2], (-0.1, 1), *RIGHT],
     ],
-    ids=["side by side", "without rest", "inward", "across rest", "peaks in turn"],
+    ids=["side by side", "without rest", "inward", "across rest", "peaks in turn", "noise"],
 )
 def test_both_sides_of_an_envelope_are_read_from_rest_in_any_order(
-    rows: list[tuple[int, int] | None], tmp_path: Path
+    rows: list[tuple[float, float] | None], tmp_path: Path
 ) -> None:
-    """The step from one side to the other was once read as unloading, with a stiffness of a twentieth."""
+    """The step from one side to the other was once read as unloading, with a stiffness of a twentieth.
+
+    Noise of a hundredth of the displacement once made a push to one side of the record.
+    """
     curve = "displacement_mm,force_kN\n" + "".join(f"{row[0]},{row[1]}\n" if row else "NaN,NaN\n" for row in rows)
     row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,", ",,")
     (wall,) = read_folder(write_folder(tmp_path, row, curve=curve))
@@ -1037,6 +1041,16 @@ def test_cycles_that_cannot_be_in_the_order_of_the_test_are_refused(
     curve = "\n".join([heads, *(f"{x},{y}" for x, y in rows)]) + "\n"
     with pytest.raises(SceneError, match=said):
         read_folder(write_folder(tmp_path, row, curve=curve))
+
+
+def test_cycles_recorded_at_peaks_and_at_rest_are_no_envelope(tmp_path: Path) -> None:
+    """The forces at rest, which remain by friction, were once left out with the work of the cycles."""
+    rows = [(0, 0), (5, 40), (0, -15), (-5, -40), (0, 15), (10, 60), (0, -20), (-10, -60), (0, 20), (20, 61), (0, -20)]
+    curve = "displacement_mm,force_kN\n" + "".join(f"{x},{y}\n" for x, y in [*rows, (-20, -61)])
+    row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,", ",,")
+    (wall,) = read_folder(write_folder(tmp_path, row, curve=curve))
+    assert wall.path == pytest.approx((0.005, -0.005, 0.01, -0.01, 0.02, -0.02))
+    assert [round(loop.reach, 9) for loop in loops(wall.curve)] == [0.005, 0.01]
 
 
 def test_half_a_cycle_is_no_envelope(tmp_path: Path) -> None:
