@@ -317,6 +317,7 @@ class Push(Lead):
                 multiplier = run.drive(state, part * power, length, given=given)
                 full_way += part * speed * (state.time - since)
                 drag = max(0.0, self._damped(state) - damped) / (part * power * (state.time - since))
+                drag = min(drag, max(multiplier, 0.0))  # of a fall it is many times the work of the load
                 peaks.see(multiplier, drag, length, state, len(traverse.rows) + (window > peaks.windows // 2))
                 if window == peaks.windows // 2:
                     middle = state.copy()

@@ -632,3 +632,15 @@ def test_damping_of_a_wall_that_snaps_takes_no_more_than_the_load() -> None:
     damped = re.search(r"damping takes up to (\S+) %", outcome.message)
     assert damped is not None
     assert float(damped[1]) <= 100.0
+
+
+def test_damping_of_a_wall_that_is_lifted_takes_no_more_than_the_load() -> None:
+    """A live load that lifts a pier as it leans: its multiplier is largest where the pier falls."""
+    joint = {"friction": 0.8, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    lifted = {"kind": "point", "at": [0.25, 4.0], "force": [0.0, 2e4]}
+    scene = courses([[1]] * 2, 0.5, 2.0, joint=joint, load={"gravity": 9.81, "live": [{"kind": "lateral"}, lifted]})
+    outcome = dem_dynamic(scene, displacements="finite")
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower > -0.01 * outcome.upper
+    assert "damping takes 100 % of the load" in outcome.message
