@@ -4,9 +4,10 @@ import numpy as np
 
 from runningbond.joints import wall_points, wall_stiffness
 from runningbond.joints.wall_points import spreads
-from runningbond.limit.kinematics import control_row, live_load
+from runningbond.limit.kinematics import live_load
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
+from runningbond.results.reactions import WORKS
 from runningbond.scene import Array, Scene
 
 
@@ -39,8 +40,8 @@ def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
     if len(outcome.force) != len(points) or not len(outcome.motion) or not len(outcome.curve):
         return None
     motion = outcome.motion.ravel()
-    pushed, moved = float(live_load(scene) @ motion), abs(float(control_row(scene) @ motion))
-    if pushed <= 0 or moved <= 0:
+    pushed = float(live_load(scene) @ motion)
+    if pushed <= 0:
         return None
     first, last = points.position.reshape(-1, 2, 2).swapaxes(0, 1)
     length = np.hypot(*(last - first).T)
@@ -49,9 +50,21 @@ def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
     turns = (spin > 0) & (pressed > 0) & ~joints.at_corner
     spring = wall_stiffness(scene, np.arange(len(joints)))[0] * scene.thickness_of_joints
     length, pressed, spin, spring = length[turns], pressed[turns], spin[turns], spring[turns]
-    far, load = outcome.curve[outcome.curve[:, 0] != 0].T
-    theta = np.abs(far)[:, None] / moved * spin
+    load, far = _far(outcome)
+    theta = far[:, None] / pushed * spin
     part: Array = np.sqrt(2 * pressed / (spring * theta)) / 3
     arm = np.where(3 * part <= length, part, length / 2 - spring * theta * length**3 / (12 * pressed))
     bed = load - arm @ (pressed * spin) / pushed
     return float(bed.max()) if len(bed) and bed.argmax() < len(bed) - 1 else None
+
+
+def _far(outcome: Outcome) -> tuple[Array, Array]:
+    """λ along a path, and the work so far of the live load at λ = 1 on the way [J], where that is not 0.
+
+    Unlike the displacement of a point, which ties may hold, this grows with every mechanism.
+    """
+    columns = outcome.curve_columns()
+    load, work = columns["multiplier"], columns[WORKS[1]]
+    mean = (load[1:] + load[:-1]) / 2
+    far = np.cumsum(np.divide(np.diff(work), mean, out=np.zeros(len(mean)), where=mean > 0))
+    return load[1:][far > 0], far[far > 0]

@@ -11,6 +11,7 @@ from runningbond.scene import Scene
 from tests.walls import courses
 
 WIDTH, HEIGHT, THICKNESS = 0.5, 4.0, 0.3
+SOFT = {"friction": 0.8, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
 
 
 def tower(stiffness: float, rows: int = 1, **joint: float) -> Scene:
@@ -61,3 +62,19 @@ def test_no_load_without_mechanism_or_peak() -> None:
     short = dem_dynamic(scene, displacements="finite", distance=0.002)
     assert np.abs(short.curve[:, 0]).max() < 0.01
     assert load_of_beds(scene, short) is None
+
+
+@pytest.mark.long
+def test_load_of_a_wall_that_a_tie_holds_at_its_top() -> None:
+    """Two blocks bulge while the point at which displacements are read is held by the tie."""
+    tie = {"from": [-3.0, HEIGHT], "to": [0.0, HEIGHT], "area": 1e-4, "young": 2e10, "yield": 2000.0}
+    two, nine = (
+        courses([[1]] * 2, WIDTH, HEIGHT / 2, joint=SOFT | joint, tie=[tie])
+        for joint in ({}, {"compressive_strength": 1e12})
+    )
+    outcome = dem_dynamic(two, displacements="finite", distance=0.06)
+    spread = dem_dynamic(nine, displacements="finite", distance=0.06)
+    assert outcome.multiplier == pytest.approx(0.5, rel=0.01)
+    assert spread.multiplier is not None
+    assert spread.multiplier < 0.9 * 0.5
+    assert load_of_beds(two, outcome) == pytest.approx(spread.multiplier, rel=0.015)
