@@ -37,7 +37,8 @@ def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
     forces, and if this λ still grows at the end of the path.
     """
     points, joints = wall_points(scene), scene.joints
-    if len(outcome.force) != len(points) or not len(outcome.motion) or not len(outcome.curve):
+    has_path = len(outcome.curve) > 0 and WORKS[1] in outcome.path_columns  # models of users may have none
+    if len(outcome.force) != len(points) or not len(outcome.motion) or not has_path:
         return None
     motion = outcome.motion.ravel()
     pushed = float(live_load(scene) @ motion)

@@ -1,5 +1,7 @@
 """Pushed walls whose joints bear at their ends: what joints along their whole length would bear."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,8 @@ def test_every_joint_that_turns_counts() -> None:
 def test_no_load_without_mechanism_or_peak() -> None:
     scene = tower(1e9)
     assert load_of_beds(scene, limit(scene)) is None
+    whole = dem_dynamic(scene, displacements="finite")
+    assert load_of_beds(scene, replace(whole, path=np.zeros((0, 0)), path_columns=())) is None
     short = dem_dynamic(scene, displacements="finite", distance=0.002)
     assert np.abs(short.curve[:, 0]).max() < 0.01
     assert load_of_beds(scene, short) is None
