@@ -23,9 +23,9 @@ def rolls(scene: Scene, outcome: Outcome, tolerance: float) -> str:
     largest, bed = outcome.multiplier or 0.0, load_of_beds(scene, outcome)
     if bed is None or bed >= (1 - tolerance) * largest:
         return ""
-    told = "joints bear at their ends: along their length they roll onto their edges while the wall leans, and it bears"
+    told = "joints carry forces only at their ends; pressed along them they roll onto their edges as the wall leans"
     remedy = "a joint.compressive_strength, even one that is never reached, spreads pressures along joints"
-    return f"{told} about {number(max(bed, 0.0))}; {remedy}"
+    return f"{told}, and it bears about {number(max(bed, 0.0))}; {remedy}"
 
 
 def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
