@@ -159,7 +159,7 @@ class Lead(ABC):
         return ""
 
     def friction_note(self, traverse: Traverse, tolerance: float, differs: str, *, until: int | None = None) -> str:
-        """The note of `friction_note` for a traverse; its answer is in the last of its rows `until` a number."""
+        """The note of `friction_note` for a traverse, from the works of its rows up to number `until` (excluded)."""
         friction = self.run.ledger(traverse.best).friction - self.run.ledger(self.start).friction
         works = np.array([row.works[1] for row in traverse.rows[:until]])
         return friction_note(self.scene, friction, works, self.least_work, tolerance, differs=differs)

@@ -44,7 +44,7 @@ followed."""
 
 
 def friction_note(scene: Scene, friction: float, works: Array, least: float, tolerance: float, *, differs: str) -> str:
-    """Note on an answer that depends on how joints slid, else empty, as for walls whose forces balance alone gives.
+    """Note on an answer that depends on how joints slid; empty where balance alone gives the joint forces.
 
     Parameters
     ----------
