@@ -97,32 +97,50 @@ def _left_by(store: Array, end: int, n: int) -> Array:
 def _invert(matrix: Array) -> bool:
     """Invert a matrix ``(s, s)`` in place by Gauss–Jordan elimination with partial (row) pivoting.
 
-    Return False if it is singular.
+    Return False if it is singular. Four columns are eliminated at once, because the others are read and written once
+    per pass. Each entry is changed by the same operations, in the same order, as if it were one column after the other.
     """
     s = len(matrix)
-    order = np.arange(s)
-    for k in range(s):
-        best = k
-        for i in range(k + 1, s):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if not abs(matrix[best, k]) > 0.0:
-            return False
-        if best != k:
+    order, pivots, factor = np.arange(s), np.zeros((4, s)), np.zeros((s, 4))
+    for first in range(0, s, 4):
+        last = min(first + 4, s)
+        pivots[:] = 0.0  # rows of the four pivots as they were when these were eliminated, except in the four columns
+        factor[:] = 0.0  # multiples of these rows that are still to be subtracted from each row
+        for k in range(first, last):
+            best = k
+            for i in range(k + 1, s):
+                if abs(matrix[i, k]) > abs(matrix[best, k]):
+                    best = i
+            if not abs(matrix[best, k]) > 0.0:
+                return False
+            if best != k:
+                for j in range(s):
+                    matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+                for p in range(k - first):
+                    factor[k, p], factor[best, p] = factor[best, p], factor[k, p]
+                order[k], order[best] = order[best], order[k]
+            for p in range(k - first):
+                for j in range(s):
+                    matrix[k, j] -= factor[k, p] * pivots[p, j]
+                factor[k, p] = 0.0
+            inverse = 1 / matrix[k, k]
+            matrix[k, k] = 1.0
             for j in range(s):
-                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-            order[k], order[best] = order[best], order[k]
-        inverse = 1 / matrix[k, k]
-        matrix[k, k] = 1.0
-        for j in range(s):
-            matrix[k, j] *= inverse
+                matrix[k, j] *= inverse
+                pivots[k - first, j] = matrix[k, j]
+            for j in range(first, last):
+                pivots[k - first, j] = 0.0
+            for i in range(s):
+                if i != k:
+                    multiple = matrix[i, k]
+                    factor[i, k - first] = multiple
+                    matrix[i, k] = 0.0
+                    for j in range(first, last):
+                        matrix[i, j] -= multiple * matrix[k, j]
         for i in range(s):
-            if i != k:
-                factor = matrix[i, k]
-                matrix[i, k] = 0.0
-                if factor != 0.0:
-                    for j in range(s):
-                        matrix[i, j] -= factor * matrix[k, j]
+            a, b, c, d = factor[i, 0], factor[i, 1], factor[i, 2], factor[i, 3]
+            for j in range(s):
+                matrix[i, j] = matrix[i, j] - a * pivots[0, j] - b * pivots[1, j] - c * pivots[2, j] - d * pivots[3, j]
     row = np.empty(s)
     for i in range(s):
         for k in range(s):
