@@ -1,14 +1,45 @@
-"""Note for walls whose joints bear at their ends but would, along their whole length, roll onto their edges first."""
+"""Walls whose joints bear at their ends but would, along their whole length, roll onto their edges first."""
+
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from runningbond.joints import wall_points, wall_stiffness
-from runningbond.joints.wall_points import spreads
+from runningbond.joints import JointPoints, wall_points, wall_stiffness
+from runningbond.joints.wall_points import listed_points, spreads
 from runningbond.limit.kinematics import live_load
 from runningbond.results import Outcome
+from runningbond.results.mechanism import fastest_corner
 from runningbond.results.outcome import number
 from runningbond.results.reactions import WORKS
 from runningbond.scene import Array, Scene
+
+NEVER_REACHED = 1e12
+"""Compressive strength [Pa] that no joint reaches: it has joints evaluated at points along them."""
+
+LITTLE_WAY = 1e-7
+"""Shortest way of a mechanism at which its load is computed, relative to that on which it loses all of its load."""
+
+WAYS = 500
+"""Number of ways between these two."""
+
+
+class Leaning(NamedTuple):
+    """A wall that rolls onto the edges of its joints as it leans."""
+
+    load: float  # largest λ on the way
+    moved: float  # displacement of the fastest corner there [m]
+
+    def __str__(self) -> str:
+        return f"as it leans it bears about {number(self.load)}, or less if joints elsewhere bend"
+
+
+def along_joints(scene: Scene) -> Scene:
+    """The scene with joints that bear along their whole length, at finite displacements too."""
+    if spreads(scene, finite=True):
+        return scene
+    materials = tuple(replace(each, compressive_strength=NEVER_REACHED) for each in scene.joint_materials)
+    return replace(scene, joint_materials=materials)
 
 
 def rolls(scene: Scene, outcome: Outcome, tolerance: float) -> str:
@@ -21,11 +52,13 @@ def rolls(scene: Scene, outcome: Outcome, tolerance: float) -> str:
     if outcome.status != "collapse" or scene.is_led or scene.history or spreads(scene, finite=True):
         return ""
     largest, bed = outcome.multiplier or 0.0, load_of_beds(scene, outcome)
+    if bed is None and (further := leaning(scene, outcome)) is not None:  # the path ends before this load
+        bed = further.load
     if bed is None or bed >= (1 - tolerance) * largest:
         return ""
     told = "joints carry forces only at their ends; pressed along them they roll onto their edges as the wall leans"
     remedy = "a joint.compressive_strength, even one that is never reached, spreads pressures along joints"
-    return f"{told}, and it bears about {number(max(bed, 0.0))}; {remedy}"
+    return f"{told}, and it bears about {number(max(bed, 0.0))}, or less if joints elsewhere bend; {remedy}"
 
 
 def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
@@ -36,27 +69,76 @@ def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
     that of the live load. Other joints than those of the mechanism are taken as rigid. None without a mechanism or
     forces, and if this λ still grows at the end of the path.
     """
-    points, joints = wall_points(scene), scene.joints
     has_path = len(outcome.curve) > 0 and WORKS[1] in outcome.path_columns  # models of users may have none
+    points = wall_points(scene)
     if len(outcome.force) != len(points) or not len(outcome.motion) or not has_path:
         return None
-    motion = outcome.motion.ravel()
+    load, far = _far(outcome)
+    bed = _of_beds(scene, outcome, points, load, far)
+    return None if bed is None or not len(bed) or bed.argmax() == len(bed) - 1 else float(bed.max())
+
+
+def leaning(scene: Scene, outcome: Outcome) -> Leaning | None:
+    """Largest λ of a collapse at small displacements if the wall leans meanwhile and its joints are beds of springs.
+
+    As `load_of_beds`, but λ of the moved mechanism is from the forces F on its blocks, at r from their centroids: on a
+    way of 1, on which blocks turn by ω, λ falls by -Σ ω² F · r over the work of the live load at λ = 1. None without a
+    mechanism, forces or stiffnesses, for walls with ties or held motions, and if λ does not fall.
+    """
+    points = listed_points(scene, len(outcome.force))
+    held = len(scene.pins) or len(scene.late_pins) or len(scene.ties) or scene.is_led
+    rigid = any(each.elasticity is None for each in scene.materials_of_joints)
+    load = outcome.multiplier or 0.0
+    if points is None or not len(points) or not len(outcome.motion) or held or rigid or load <= 0:
+        return None
+    pushed = float(live_load(scene) @ outcome.motion.ravel())
+    lost = -float(outcome.motion[:, 2] ** 2 @ _virials(scene, outcome, points))
+    if pushed <= 0 or lost <= 0:
+        return None
+    way = np.geomspace(LITTLE_WAY, 1.0, WAYS) * load * pushed / lost
+    bed = _of_beds(scene, outcome, points, load - way * lost / pushed, way * pushed)
+    if bed is None:
+        return None
+    top = int(bed.argmax())
+    return Leaning(max(float(bed[top]), 0.0), float(way[top]) * fastest_corner(scene.blocks, outcome.motion))
+
+
+def _of_beds(scene: Scene, outcome: Outcome, points: JointPoints, load: Array, far: Array) -> Array | None:
+    """λ on beds of springs where it is `load` on edges, after the live load has done the work `far` [J] at λ = 1."""
+    motion, joints = outcome.motion.ravel(), scene.joints
     pushed = float(live_load(scene) @ motion)
     if pushed <= 0:
         return None
-    first, last = points.position.reshape(-1, 2, 2).swapaxes(0, 1)
+    first, *_, last = points.position.reshape(len(joints), -1, 2).swapaxes(0, 1)
     length = np.hypot(*(last - first).T)
-    pressed = -outcome.force[:, 0].reshape(-1, 2).min(axis=1)  # an end that is torn open presses the other one
+    pressing = np.maximum(-outcome.force[:, 0], 0.0).reshape(len(joints), -1)
+    pressed, borne = pressing.max(axis=1), np.zeros(len(joints))  # an end that is torn open presses the other one
+    if spreads(scene):  # N of a joint that crushes is not at its edge in any case
+        along = np.hypot(*(points.position.reshape(len(joints), -1, 2) - first[:, None]).T).T
+        pressed = pressing.sum(axis=1)
+        middle = (pressing * along).sum(axis=1) / np.where(pressed > 0, pressed, 1.0)
+        borne = np.minimum(middle, length - middle)
     spin = np.abs(np.diff(outcome.motion[joints.block, 2], axis=1)[:, 0])
     turns = (spin > 0) & (pressed > 0) & ~joints.at_corner
     spring = wall_stiffness(scene, np.arange(len(joints)))[0] * scene.thickness_of_joints
-    length, pressed, spin, spring = length[turns], pressed[turns], spin[turns], spring[turns]
-    load, far = _far(outcome)
+    length, pressed, spin, spring, borne = (each[turns] for each in (length, pressed, spin, spring, borne))
     theta = far[:, None] / pushed * spin
     part: Array = np.sqrt(2 * pressed / (spring * theta)) / 3
     arm = np.where(3 * part <= length, part, length / 2 - spring * theta * length**3 / (12 * pressed))
-    bed = load - arm @ (pressed * spin) / pushed
-    return float(bed.max()) if len(bed) and bed.argmax() < len(bed) - 1 else None
+    return np.asarray(load - np.maximum(arm - borne, 0.0) @ (pressed * spin) / pushed)
+
+
+def _virials(scene: Scene, outcome: Outcome, points: JointPoints) -> Array:
+    """Sum of F · r over the forces F on each block at r from its centroid, at the collapse load, ``(nb,)`` [J]."""
+    a, b = points.block.T
+    pull = outcome.force[:, :1] * points.normal + outcome.force[:, 1:] * points.tangent  # on block a
+    dead, live = scene.dead_forces, scene.live_forces
+    block = np.concatenate([a, b, dead.block, live.block])
+    force = np.concatenate([pull, -pull, dead.force, (outcome.multiplier or 0.0) * live.force])
+    arm = np.concatenate([points.position, points.position, dead.at, live.at]) - scene.blocks.centroid[block]
+    virial = np.zeros(len(scene.blocks))
+    np.add.at(virial, block, (force * arm).sum(axis=1))
+    return virial
 
 
 def _far(outcome: Outcome) -> tuple[Array, Array]:

@@ -31,6 +31,7 @@ from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness, scene_from_dict
 from tests.at_length import at_length
+from tests.beds import stack_on_beds
 from tests.walls import content, courses, panel, write_toml
 
 KNOWN = {
@@ -668,7 +669,10 @@ def test_wall_that_locks_with_dilatancy_is_run_without() -> None:
 
 @pytest.mark.long
 def test_leaning_stack_is_followed_at_finite_displacements() -> None:
-    """On soft joints a stack leans by a tenth of a block, and its weight overturns it before λ = b / (n h)."""
+    """On soft joints a stack leans by a tenth of a block, and its weight overturns it before λ = b / (n h).
+
+    With forces at the ends of its joints alone it would bear nine tenths of that.
+    """
     scene = courses([[1]] * 4, joint__normal_stiffness=1e7, joint__shear_stiffness=1e7)
     advice = advise(scene)
     assert climbed(advice) == ["homog", "limit", "dem-dynamic, finite"]
@@ -676,7 +680,48 @@ def test_leaning_stack_is_followed_at_finite_displacements() -> None:
     assert found.upper is not None
     assert advice.known.bound is not None
     assert advice.known.bound == pytest.approx(0.4 / (4 * 0.175), rel=1e-6)
-    assert 0.9 * advice.known.bound < found.upper < advice.known.bound
+    exact = stack_on_beds(4, 0.4, 0.175, float(scene.mass[0]) * 9.81, 0.12 * 1e7, 0.12 * 1e7)
+    assert found.upper == pytest.approx(exact, rel=0.015)
+    assert exact < 0.7 * advice.known.bound
+
+
+def test_tower_that_rolls_onto_its_edge_as_it_leans_is_followed_at_finite_displacements() -> None:
+    """A block of 0.5 × 4 m on springs of 1e10 Pa/m bears 9 % less than b / h: (b / 2 − 3 e / 2) / (h / 2)."""
+    width, height, stiffness = 0.5, 4.0, 1e10
+    scene = courses([[1]], width, height, joint={"friction": 0.8} | _springs(stiffness))
+    advice = advise(scene)
+    assert climbed(advice) == ["homog", "limit", "dem-dynamic, finite"]
+    e = (2 * float(scene.mass[0]) * 9.81 * height / (9 * stiffness * 0.12)) ** (1 / 3)
+    answer = advice.outcome()
+    assert answer.multiplier == pytest.approx((width - 3 * e) / height, rel=0.01)
+    assert "pressed along their whole length" in answer.message
+    assert climbed(advise(scene, 0.1)) == ["homog", "limit"]
+    stiff = courses([[1]], width, height, joint={"friction": 0.8} | _springs(1e13))
+    assert climbed(advise(stiff)) == ["homog", "limit"]
+
+
+@pytest.mark.parametrize("rows", [8, 12])
+def test_tower_of_blocks_bends_in_all_its_joints_as_it_leans(rows: int) -> None:
+    scene = courses([[1]] * rows, 0.5, 0.5, joint={"friction": 0.8} | _springs(1e9))
+    answer = advise(scene).outcome()
+    exact = stack_on_beds(rows, 0.5, 0.5, float(scene.mass[0]) * 9.81, 0.12 * 1e9, 0.12 * 4e8)
+    assert exact < 0.8 / rows  # limit: 1 / rows
+    assert answer.lower is not None
+    assert answer.upper is not None
+    assert answer.lower < 1.015 * exact
+    assert answer.upper > 0.985 * exact
+
+
+def test_load_of_a_tower_that_leans_is_told_where_finite_displacements_are_refused() -> None:
+    scene = courses([[1]], 0.5, 4.0, joint={"friction": 0.8, "cohesion": 10.0} | _springs(1e10))
+    advice = advise(scene)
+    assert climbed(advice)[-1] == "dem-dynamic, finite"
+    assert advice.rungs[-1].outcome is None
+    assert "joints roll onto their edges: as it leans it bears about 0.114" in advice.outcome().message
+
+
+def _springs(stiffness: float) -> dict[str, float]:
+    return {"normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness}
 
 
 @pytest.mark.parametrize(("young", "far"), [(2e11, False), (2e9, True)])

@@ -8,7 +8,7 @@ import pytest
 from dem.dynamic import dem_dynamic
 from runningbond.limit import limit
 from runningbond.models import run_model
-from runningbond.models.edges import load_of_beds, rolls
+from runningbond.models.edges import along_joints, leaning, load_of_beds, rolls
 from runningbond.scene import Scene
 from tests.walls import courses
 
@@ -58,6 +58,53 @@ def test_every_joint_that_turns_counts() -> None:
     assert load_of_beds(scene, outcome) == pytest.approx(on_a_bed(whole, 1e9), rel=0.01)
 
 
+@pytest.mark.parametrize("rows", [1, 8])
+@pytest.mark.parametrize("stiffness", [1e9, 1e10])
+def test_load_as_it_leans_follows_from_forces_and_mechanism_at_small_displacements(rows: int, stiffness: float) -> None:
+    scene = tower(stiffness, rows)
+    leans = leaning(scene, limit(scene))
+    assert leans is not None
+    assert leans.load == pytest.approx(on_a_bed(tower(stiffness), stiffness), rel=0.003)
+    weight = float(scene.mass[~scene.fixed].sum()) * 9.81
+    part = (2 * weight * HEIGHT / (9 * stiffness * THICKNESS)) ** (1 / 3)  # where its loss and that of leaning balance
+    turned = 2 * weight / (9 * stiffness * THICKNESS * part**2)
+    assert leans.moved == pytest.approx(turned * np.hypot(WIDTH, HEIGHT), rel=0.06)
+
+
+def test_load_on_top_of_a_wall_counts_as_it_leans() -> None:
+    """A load Q in the middle of its top loses its lever arm twice as fast as the weight."""
+    load, stiffness = 2e4, 1e10
+    top = {"kind": "point", "at": [WIDTH / 2, HEIGHT], "force": [0.0, -load]}
+    scene = courses(
+        [[1]], WIDTH, HEIGHT, wall__thickness=THICKNESS, joint=SOFT | {"normal_stiffness": stiffness}, load__dead=top
+    )
+    leans, weight = leaning(scene, limit(scene)), float(scene.mass[0]) * 9.81
+    turned = np.geomspace(1e-6, 0.1, 100_000)
+    part = np.sqrt(2 * (weight + load) / (9 * stiffness * THICKNESS * turned))
+    most = (weight + load) * WIDTH / (weight * HEIGHT)
+    arm = (weight + load) * (WIDTH / 2 - part)
+    arm -= turned * (weight * HEIGHT / 2 + load * HEIGHT + most * weight * WIDTH / 2)
+    assert leans is not None
+    assert leans.load == pytest.approx(float(arm.max()) / (weight * HEIGHT / 2), rel=0.001)
+
+
+def test_joints_along_their_length_are_those_that_spread() -> None:
+    scene = tower(1e9, compressive_strength=1e7)
+    assert along_joints(scene) is scene
+    exact = on_a_bed(tower(1e10), 1e10)
+    spread = dem_dynamic(along_joints(tower(1e10)), displacements="finite")
+    assert spread.multiplier == pytest.approx(exact, rel=0.015)
+
+
+def test_toe_that_crushes_does_not_roll_as_well() -> None:
+    """N is so far from the edge of a joint that crushes that a bed of stiff springs bears nothing less."""
+    scene = tower(1e11, compressive_strength=2e5)
+    outcome = run_model("dem-dynamic", scene)
+    leans = leaning(scene, outcome)
+    assert leans is not None
+    assert leans.load == pytest.approx(outcome.multiplier, rel=0.03)
+
+
 def test_no_load_without_mechanism_or_peak() -> None:
     scene = tower(1e9)
     assert load_of_beds(scene, limit(scene)) is None
@@ -66,6 +113,10 @@ def test_no_load_without_mechanism_or_peak() -> None:
     short = dem_dynamic(scene, displacements="finite", distance=0.002)
     assert np.abs(short.curve[:, 0]).max() < 0.01
     assert load_of_beds(scene, short) is None
+    leans = leaning(scene, short)
+    assert leans is not None
+    assert leans.load == pytest.approx(on_a_bed(scene, 1e9), rel=0.01)
+    assert f"it bears about {leans.load:.4f}" in rolls(scene, short, 0.01)
 
 
 @pytest.mark.long

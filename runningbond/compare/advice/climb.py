@@ -11,9 +11,12 @@ from typing import Any
 import numpy as np
 
 from runningbond.draws import Scatter
+from runningbond.joints.wall_points import spreads
 from runningbond.models import check_tolerance, run_model
 from runningbond.models.costs import Estimate, short_search, tolerance_of_draws
+from runningbond.models.edges import along_joints
 from runningbond.results import Outcome
+from runningbond.results.outcome import joined
 from runningbond.scene import Scene, SceneError
 
 from ..table import bracket
@@ -97,6 +100,8 @@ class Advice:
             finite, large = last.model.endswith("finite"), (known.displacement or 0.0) > known.tolerance
             if finite:
                 message += "; at small displacements" + (", though they are not small" if large else "")
+            if known.on_edges is not None:
+                message += f"; pressed along their length, joints roll onto their edges: {known.on_edges}"
             message += f"; {last.model}: {last.next.reason}" if last.outcome is not None or not finite else ""
         return replace(answer, seconds=known.seconds, message=message)
 
@@ -159,12 +164,18 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
 def finite_peak(known: Knowledge, step: Step) -> Outcome:
     """Push a wall past its peak at finite displacements, where blocks crack only on their axes.
 
+    Joints bear along their whole length if the wall then falls earlier, as it leans.
     Undecided if it ends above the bound at small displacements, as inertia then bears part of the load, or if λ is
     above the load under which the wall fell when its blocks could crack anywhere.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
     distance = PUSH_FACTOR * max(known.displacement or 0.0, tolerance) * scene.block_size
+    leans, along = known.on_edges, ""
+    if leans is not None:
+        distance = max(distance, PUSH_FACTOR * leans.moved)
+        along = "" if spreads(scene, finite=True) else "joints are taken to be pressed along their whole length"
+        scene = along_joints(scene)
     reach: dict[str, Any] = {} if scene.is_led else {"distance": distance}  # a beam moves as its drive prescribes
     outcome = run_model(model, scene, tolerance, displacements="finite", **reach)
     reached, above = outcome.lower, "above the load that no wall carries at small displacements"
@@ -172,4 +183,4 @@ def finite_peak(known: Knowledge, step: Step) -> Outcome:
         reached, bound, above = outcome.multiplier, known.answer.upper, "it bears more, as blocks crack only on axes"
     if outcome.status == "collapse" and bound is not None and reached is not None and reached > bound:
         outcome = replace(outcome, status="undecided", multiplier=None, message=f"{above}: {outcome.message}")
-    return replace(outcome, model=step.name or "")
+    return replace(outcome, model=step.name or "", message=joined(outcome.message, along))

@@ -11,6 +11,7 @@ from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.models.costs import Estimate, cracks_anywhere, estimate, pace
+from runningbond.models.edges import Leaning, leaning
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError
@@ -170,6 +171,18 @@ class Knowledge:
         displacement, multiplier = path.curve.T
         last = int(np.argmin(np.abs(multiplier - path.lower)))
         return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)
+
+    @property
+    def on_edges(self) -> Leaning | None:
+        """How the wall rolls onto the edges of its joints, if it then bears less than the answer by the tolerance.
+
+        Joints that soften do so before they roll.
+        """
+        if self.answer is None or self.evidence == "finite" or self.softens:
+            return None
+        found = (leaning(self.scene, each) for each in (self.answer, self.followed) if each is not None)
+        leans, least = next(filter(None, found), None), self.answer.lower or 0.0
+        return leans if leans is not None and leans.load < (1 - self.tolerance) * least else None
 
     def estimate(self, model: Model, draws: int = 1) -> Estimate:
         """Expected cost of a model for some draws, at the pace of the models run so far."""

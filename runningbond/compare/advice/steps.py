@@ -137,6 +137,11 @@ def _enough(known: Knowledge, why: str) -> Step:
     finite = next(model for model in far if deforms(model) == known.soft)
     if known.finite:
         return Step(finite, f"{why}; finite displacements are requested", finite=True)
+    leans = known.on_edges
+    if leans is not None:
+        return Step(
+            finite, f"{why}; but pressed along their length, joints roll onto their edges: {leans}", finite=True
+        )
     moved = known.displacement
     if moved is None:
         return Step(None, f"{why}; displacements are taken to be small")
