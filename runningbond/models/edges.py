@@ -9,10 +9,10 @@ from runningbond.joints import JointPoints, wall_points, wall_stiffness
 from runningbond.joints.wall_points import listed_points, spreads
 from runningbond.limit.kinematics import live_load
 from runningbond.results import Outcome
-from runningbond.results.mechanism import fastest_corner
+from runningbond.results.mechanism import carried, fastest_corner
 from runningbond.results.outcome import number
 from runningbond.results.reactions import WORKS
-from runningbond.scene import Array, Scene
+from runningbond.scene import ANCHOR, Array, Scene
 
 NEVER_REACHED = 1e12
 """Compressive strength [Pa] that no joint reaches: it has joints evaluated at points along them."""
@@ -82,17 +82,18 @@ def leaning(scene: Scene, outcome: Outcome) -> Leaning | None:
     """Largest λ of a collapse at small displacements if the wall leans meanwhile and its joints are beds of springs.
 
     As `load_of_beds`, but λ of the moved mechanism is from the forces F on its blocks, at r from their centroids: on a
-    way of 1, on which blocks turn by ω, λ falls by -Σ ω² F · r over the work of the live load at λ = 1. None without a
-    mechanism, forces or stiffnesses, for walls with ties or held motions, and if λ does not fall.
+    way of 1, on which blocks turn by ω and ties of length L and pull T across their line by v, λ falls by
+    -Σ ω² F · r - Σ T v² / L over the work of the live load at λ = 1. None without a mechanism, forces or stiffnesses,
+    for walls with held motions, and if λ does not fall.
     """
     points = listed_points(scene, len(outcome.force))
-    held = len(scene.pins) or len(scene.late_pins) or len(scene.ties) or scene.is_led
+    held = len(scene.pins) or len(scene.late_pins) or scene.is_led or len(outcome.pull) != len(scene.ties)
     rigid = any(each.elasticity is None for each in scene.materials_of_joints)
     load = outcome.multiplier or 0.0
     if points is None or not len(points) or not len(outcome.motion) or held or rigid or load <= 0:
         return None
     pushed = float(live_load(scene) @ outcome.motion.ravel())
-    lost = -float(outcome.motion[:, 2] ** 2 @ _virials(scene, outcome, points))
+    lost = -float(outcome.motion[:, 2] ** 2 @ _virials(scene, outcome, points)) - _lengthening(scene, outcome)
     if pushed <= 0 or lost <= 0:
         return None
     way = np.geomspace(LITTLE_WAY, 1.0, WAYS) * load * pushed / lost
@@ -132,13 +133,27 @@ def _virials(scene: Scene, outcome: Outcome, points: JointPoints) -> Array:
     """Sum of F · r over the forces F on each block at r from its centroid, at the collapse load, ``(nb,)`` [J]."""
     a, b = points.block.T
     pull = outcome.force[:, :1] * points.normal + outcome.force[:, 1:] * points.tangent  # on block a
-    dead, live = scene.dead_forces, scene.live_forces
-    block = np.concatenate([a, b, dead.block, live.block])
-    force = np.concatenate([pull, -pull, dead.force, (outcome.multiplier or 0.0) * live.force])
-    arm = np.concatenate([points.position, points.position, dead.at, live.at]) - scene.blocks.centroid[block]
+    dead, live, ties = scene.dead_forces, scene.live_forces, scene.ties
+    tie, end = np.nonzero(ties.block != ANCHOR)
+    tied = np.where(end == 0, 1.0, -1.0)[:, None] * (outcome.pull.reshape(-1, 1) * ties.direction)[tie]
+    block = np.concatenate([a, b, dead.block, live.block, ties.block[tie, end]])
+    force = np.concatenate([pull, -pull, dead.force, (outcome.multiplier or 0.0) * live.force, tied])
+    at = np.concatenate([points.position, points.position, dead.at, live.at, ties.ends[tie, end]])
+    arm = at - scene.blocks.centroid[block]
     virial = np.zeros(len(scene.blocks))
     np.add.at(virial, block, (force * arm).sum(axis=1))
     return virial
+
+
+def _lengthening(scene: Scene, outcome: Outcome) -> float:
+    """Σ T v² / L of ties of pull T and length L, whose ends move apart by v across their line [J]."""
+    ties, ends = scene.ties, []
+    for end in (0, 1):
+        held = ties.block[:, end] != ANCHOR
+        moved = carried(scene.blocks, np.where(held, ties.block[:, end], 0), ties.ends[:, end], outcome.motion)
+        ends.append(np.where(held[:, None], moved, 0.0))
+    (x, y), (u, v) = ties.direction.T, (ends[1] - ends[0]).T
+    return float(outcome.pull.ravel() @ ((x * v - y * u) ** 2 / ties.length))
 
 
 def _far(outcome: Outcome) -> tuple[Array, Array]:

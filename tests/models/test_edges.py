@@ -88,6 +88,25 @@ def test_load_on_top_of_a_wall_counts_as_it_leans() -> None:
     assert leans.load == pytest.approx(float(arm.max()) / (weight * HEIGHT / 2), rel=0.001)
 
 
+def test_tie_that_yields_turns_and_lengthens_as_a_wall_leans() -> None:
+    """A level tie at the head of a block, T at a height h; λ from the moments about its toe, at any rotation."""
+    most, stiffness, anchor = 2000.0, 1e10, -1.0
+    tie = {"from": [anchor, HEIGHT], "to": [0.0, HEIGHT], "area": 1e-4, "young": 2e11, "yield": most}
+    joint = SOFT | {"normal_stiffness": stiffness}
+    scene = courses([[1]], WIDTH, HEIGHT, wall__thickness=THICKNESS, joint=joint, tie=[tie])
+    leans, weight = leaning(scene, limit(scene)), float(scene.mass[0]) * 9.81
+    turned = np.geomspace(1e-6, 0.05, 100_000)
+    cosine, sine = np.cos(turned), np.sin(turned)
+    x, y = -WIDTH * cosine + HEIGHT * sine, WIDTH * sine + HEIGHT * cosine  # head, from the toe
+    along = np.array([anchor - WIDTH - x, HEIGHT - y])
+    fx, fy = most * along / np.hypot(*along)
+    arm, up = WIDTH / 2 * cosine - HEIGHT / 2 * sine, HEIGHT / 2 * cosine + WIDTH / 2 * sine
+    rolled = weight * np.sqrt(2 * weight / (9 * stiffness * THICKNESS * turned))
+    exact = float(((weight * arm + fy * x - fx * y - rolled) / (weight * up)).max())
+    assert leans is not None
+    assert leans.load == pytest.approx(exact, rel=0.001)
+
+
 def test_joints_along_their_length_are_those_that_spread() -> None:
     scene = tower(1e9, compressive_strength=1e7)
     assert along_joints(scene) is scene
