@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -368,6 +368,16 @@ def test_undecided_draws_are_left_out() -> None:
     found = together([nowhere, collapse(HISTORY.name, 0.5, 0.6)])
     assert (found.status, found.lower, found.upper) == ("collapse", 0.5, 0.6)
     assert together([nowhere, nowhere]).summary() == nowhere.summary()
+
+
+@pytest.mark.parametrize("status", ["undecided", "unbounded", "infeasible"])
+def test_draws_without_a_collapse_are_told(status: Literal["undecided", "unbounded", "infeasible"]) -> None:
+    found = known(1.0, (0.5, 0.9))
+    other = Outcome("", HISTORY.name, status, message="it ended otherwise")
+    draws = [collapse(HISTORY.name, 0.8, 0.81), other, collapse(HISTORY.name, 0.8, 0.81)]
+    found.learn(HISTORY, together(draws), draws=draws)
+    assert "in 2 histories" in found.meaning()
+    assert f"one more is {status}: it ended otherwise" in found.meaning()
 
 
 # --- reasons to stop early ------------------------------------------------------------------------------------

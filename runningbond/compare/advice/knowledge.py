@@ -57,6 +57,7 @@ class Knowledge:
     followed: Outcome | None = None  # the last history that collapsed at small displacements
     lowest: float | None = None  # smallest collapse load by a proof, a certificate or a history
     draws: int = 0  # number of histories that the last model followed up to collapse
+    others: list[Outcome] = field(default_factory=list)  # histories of the last model that did not end in a collapse
     contradicted: bool = False  # whether a history and narrow certified loads together span more than the tolerance
 
     def __post_init__(self) -> None:
@@ -97,6 +98,7 @@ class Knowledge:
             # If paths with several load steps were followed, `upper` is the highest of their collapse loads.
             falls = [each.upper if each.fall is None else each.fall for each in draws or (outcome,) if each.upper]
             self.draws, self.followed = max(1, len(falls)), outcome
+            self.others = [each for each in draws if each.status != "collapse"]
             self._follow(outcome, min(falls, default=outcome.upper))
 
     def _is_only_load(self, bound: Outcome) -> bool:
@@ -217,6 +219,7 @@ class Knowledge:
         if self.lowest is not None and self.lowest < (answer.lower or 0.0):
             below = f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
+        below += "".join(f"; one more is {each.status}: {each.message}" for each in self.others)
         if self.draws == 1 and answer.fall is not None:
             told = "the lowest and the highest of its paths in load steps of several lengths"
         wide = "" if _within(answer, self.tolerance) else ", which lie further apart than the tolerance"
