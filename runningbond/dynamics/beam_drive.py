@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from runningbond.results.outcome import number
+from runningbond.results.outcome import joined, number
 from runningbond.scene import Array
 
 from .lead import RAMP, ROWS, STRIDE, Lead, pace
@@ -72,14 +72,13 @@ class BeamDrive(Lead):
         return self._growth_along_slope(traverse) if self.is_small else 0.0
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
-        """Note on a force that depends on how joints slid, at small displacements, or grows on a longer path."""
-        if self.is_small:
-            largest = int(np.argmax([row.force for row in traverse.rows]))
-            return self.friction_note(traverse, tolerance, BEAM_DIFFERS, until=largest + 1)
+        """Note on a force that depends on how joints slid, or that grows on a longer path, at finite displacements."""
+        slid = self.friction_note(traverse, tolerance, BEAM_DIFFERS, until=traverse.largest + 1)
         grown = traverse.answer + self._growth_along_slope(traverse)
-        if grown <= (1 + tolerance) * traverse.answer:
-            return ""
-        return f"still rising at the end, along its slope to {number(grown)} on a path twice as long"
+        if self.is_small or grown <= (1 + tolerance) * traverse.answer:
+            return slid
+        rising = f"still rising at the end, along its slope to {number(grown)} on a path twice as long"
+        return joined(slid, rising)
 
     def _growth_along_slope(self, traverse: Traverse) -> float:
         return 0.0 if traverse.verdict == "collapse" else growth_left(self._unbraked(traverse.curve))

@@ -21,7 +21,7 @@ from .dead_load import fall_under_dead_load
 from .inertia import beam_note
 from .led import UNACCOUNTED, LedWall, collapse_of_led
 from .load_stepping import LoadSteps, load_steps, smallest_width
-from .path_curve import friction_note
+from .path_curve import LOAD_DIFFERS, friction_note
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
@@ -287,7 +287,7 @@ def _doubt(scene: Scene, run: Run, loaded: State, borne: State, tolerance: float
     """Note on a load that depends on how joints slid after a wall had rested under its dead load."""
     friction = run.ledger(borne).friction - run.ledger(loaded).friction
     live = np.array([state.external - run.dead_work(state) for state in (loaded, borne)])
-    return friction_note(scene, friction, live, 0.0, tolerance, differs="have another collapse load")
+    return friction_note(scene, friction, live, 0.0, tolerance, differs=LOAD_DIFFERS)
 
 
 def _unaccounted(run: Run, result: LoadSteps, fallen: State) -> float:

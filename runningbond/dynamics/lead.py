@@ -84,6 +84,11 @@ class Lead(ABC):
         """Least work [J] relative to which the residual of the energy ledger is judged."""
         return LITTLE * self.run.system.carried.work
 
+    @property
+    def least_friction(self) -> float:
+        """Least work [J] relative to which friction is judged to matter."""
+        return self.least_work
+
     @cached_property
     def is_small(self) -> bool:
         """Whether displacements are small."""
@@ -162,7 +167,7 @@ class Lead(ABC):
         """The note of `friction_note` for a traverse, from the works of its rows up to number `until` (excluded)."""
         friction = self.run.ledger(traverse.best).friction - self.run.ledger(self.start).friction
         works = np.array([row.works[1] for row in traverse.rows[:until]])
-        return friction_note(self.scene, friction, works, self.least_work, tolerance, differs=differs)
+        return friction_note(self.scene, friction, works, self.least_friction, tolerance, differs=differs)
 
     def before(self, curve: Array) -> str:
         """Note on the part of a curve ``(n, 2)`` before the answer; may be empty."""

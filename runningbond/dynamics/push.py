@@ -11,11 +11,11 @@ from typing import TypeAlias
 
 import numpy as np
 
-from runningbond.results.outcome import number, two_digits
+from runningbond.results.outcome import joined, number, two_digits
 from runningbond.scene import Array, Indices, Scene
 
 from .lead import ROWS, STRIDE, Lead
-from .path_curve import FINAL_PART, LITTLE, LOSS
+from .path_curve import FINAL_PART, LITTLE, LOAD_DIFFERS, LOSS
 from .peaks import Peaks
 from .run import CALMING, MOVING, Run
 from .state import State
@@ -101,6 +101,11 @@ class Push(Lead):
     def least_work(self) -> float:
         """Least work [J] to which the ledger's residual is relative: loads do no work if nothing resists them."""
         return LITTLE * self.work_of_a_block
+
+    @property
+    def least_friction(self) -> float:
+        """None: up to the largest multiplier stiff joints let the load do little work."""
+        return 0.0
 
     @property
     def goals(self) -> Array:
@@ -284,6 +289,11 @@ class Push(Lead):
         return f"the multiplier falls from {number(last)} to nothing at {brink:.4g} m, where the wall snaps"
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on a load that depends on how joints slid, and on blocks that vibrate without end."""
+        slid = self.friction_note(traverse, tolerance, LOAD_DIFFERS, until=traverse.largest + 1)
+        return joined(slid, self._vibrating(traverse, tolerance))
+
+    def _vibrating(self, traverse: Traverse, tolerance: float) -> str:
         """Note on blocks that vibrate without end, as friction can make them: damping takes a part of the load."""
         least, bears = tolerance * traverse.answer, "and the wall may bear less by as much"
         if traverse.drag > least:

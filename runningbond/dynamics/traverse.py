@@ -64,6 +64,11 @@ class Traverse:
         """The force at the end of a path from rest to rest, or the largest force during a motion."""
         return float(self.curve[:, 1].max() if self.moves else self.curve[-1, 1])
 
+    @property
+    def largest(self) -> int:
+        """Number of the row with the largest force."""
+        return int(np.argmax([row.force for row in self.rows]))
+
     def calm(self) -> None:
         """Replace the force of each row of a motion, except the first and last, by the median of three, in place."""
         force = np.array([row.force for row in self.rows])
