@@ -39,6 +39,7 @@ def notes_on(wall: MeasuredWall) -> list[str]:
         _nothing_measured,
         _unknown_modes,
         _missing_cycles,
+        _other_side,
         _envelope,
         _long_path,
         _load_of_name,
@@ -102,6 +103,18 @@ def _missing_cycles(wall: MeasuredWall) -> list[str]:
         return []
     what = f"the test was cyclic, but {wall.scene_file.name} pushes the wall to one side"
     return [f"{what}; only the strength of that side is comparable"]
+
+
+def _other_side(wall: MeasuredWall) -> list[str]:
+    """A record of cycles that begins on the other side than the path of the wall's own scene."""
+    if wall.scene_file is None or not wall.is_cyclic:
+        return []
+    path = driven_path(wall)
+    if not (goes_to_both_sides(path) and goes_to_both_sides(wall.path)) or path[0] * wall.side > 0:
+        return []
+    what = f"the record and {wall.scene_file.name} push the wall first to opposite sides"
+    told = "sides are compared by their sign, so that displacements and loops of different half cycles may be compared"
+    return [f"{what}; {told}"]
 
 
 def _envelope(wall: MeasuredWall) -> list[str]:

@@ -118,20 +118,24 @@ def test_residual_counts_recorded_zeros() -> None:
 
 
 def test_hand_formulas_include_all_loads_and_the_weakest_bed() -> None:
-    """The beam's weight, a line load on the wall and a bed joint of another material, against limit analysis."""
+    """The beam's weight, a line load on the wall and a bed joint of another material, against limit analysis.
+
+    The load on the wall does not press the bed under the beam, which is the weakest one if all are of one material.
+    """
     tables: dict[str, Any] = {
         "wall": {"length": 1.6, "height": 1.2, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},
         "block": {"density": 1e-3},
-        "joint": {"friction": 0.6},
+        "joint": {"friction": 0.4},
         "joints": {"weak": {"friction": 0.2}},
         "support": {"kind": "base"},
         "load": {"gravity": 9.81, "dead": {"kind": "line", "from": [0, 1.2], "to": [1.6, 1.2], "force": [0, -1e4]}},
-        "beam": {"height": 0.1, "mass": 3000.0, "force": [0, -2e4], "drive": {"displacement": [0.03, 0], "at": 1.25}},
+        "beam": {"height": 0.1, "mass": 3000.0, "force": [0, -2e4], "drive": {"force": [1, 0], "at": 1.25}},
     }
-    pressed = 3000 * 9.81 + 1e4 * 1.6 + 2e4
-    assert by_hand(scene_from_dict(tables)) == pytest.approx(
-        {"rocking": pressed * 1.6 / (2 * 1.25), "sliding": 0.6 * pressed}, rel=1e-6
-    )
+    beam = 3000 * 9.81 + 2e4
+    pressed = beam + 1e4 * 1.6
+    scene = scene_from_dict(tables)
+    assert by_hand(scene) == pytest.approx({"rocking": pressed * 1.6 / (2 * 1.25), "sliding": 0.4 * beam}, rel=1e-6)
+    assert limit(scene).multiplier == pytest.approx(0.4 * beam, rel=1e-5)
     tables["assign"] = [{"joint": "weak", "box": [[-1, 0.35], [9, 0.45]]}]
     scene = scene_from_dict(tables)
     assert by_hand(scene)["sliding"] == pytest.approx(0.2 * pressed, rel=1e-6)
@@ -156,7 +160,7 @@ def test_hand_formula_for_sliding_uses_the_thinnest_bed() -> None:
     assert limit(scene).multiplier == pytest.approx(exact, rel=1e-5)
 
 
-def test_hand_formulas_report_that_they_ignore_ties() -> None:
+def test_hand_formulas_report_that_they_ignore_ties_and_horizontal_loads() -> None:
     tables: dict[str, Any] = {
         "wall": {"length": 0.8, "height": 0.6, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},
         "block": {"density": 2000.0},
@@ -169,6 +173,9 @@ def test_hand_formulas_report_that_they_ignore_ties() -> None:
     without, tied = (formula(scene_from_dict(tables | extra), 0.01, what="rocking") for extra in ({}, {"tie": [tie]}))
     assert tied.multiplier == without.multiplier
     assert (without.message, tied.message) == ("worked out by hand", "worked out by hand, without its ties")
+    tables["beam"]["force"] = [1e3, -2e4]
+    pushed = formula(scene_from_dict(tables | {"tie": [tie]}), 0.01, what="rocking")
+    assert pushed.message == "worked out by hand, without its ties and horizontal dead loads"
 
 
 def test_prediction_is_read_from_the_side_of_its_test() -> None:

@@ -878,6 +878,24 @@ def test_record_of_one_side_of_a_cyclic_test_is_noted(kind: str, other: str, not
     assert notes_on(wall) == ([said] if noted else [])
 
 
+@pytest.mark.parametrize(("side", "noted"), [(1, False), (-1, True)])
+def test_record_of_cycles_and_scene_that_begin_on_opposite_sides_are_noted(
+    side: int, noted: bool, tmp_path: Path
+) -> None:
+    """A wall's own prediction, as a record with reversed signs, once dissipated a third more than itself, unnoticed."""
+    curve = "displacement_mm,force_kN\n0,0\n2,40\n-2,-40\n5,50\n-5,-50\n0,0\n"
+    folder = write_folder(tmp_path / "own", "WS.175,Cyclic", heads="Test unit name,Cyclic / Monotonic", curve=curve)
+    tables = _tables(one(tmp_path / "row"), ALL)
+    tables["beam"]["drive"] = {"amplitudes": [0.002 * side, 0.005 * side]}
+    write_toml(tables, folder / "WS.175.toml")
+    (wall,) = read_folder(folder)
+    said = (
+        "the record and WS.175.toml push the wall first to opposite sides; sides are compared by their sign, so that "
+        "displacements and loops of different half cycles may be compared"
+    )
+    assert notes_on(wall) == ([said] if noted else [])
+
+
 @pytest.mark.parametrize(("factor", "noted"), [(1.0, False), (1e-3, True), (1e3, True)])
 def test_displacements_in_another_unit_are_noted_without_the_height_of_the_actuator(
     factor: float, noted: bool, tmp_path: Path
