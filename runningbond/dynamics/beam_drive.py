@@ -5,12 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from runningbond.results.outcome import joined, number
+from runningbond.results.outcome import joined, number, two_digits
 from runningbond.scene import Array
 
 from .lead import RAMP, ROWS, STRIDE, Lead, pace
 from .path_curve import BEAM_ANSWER, BEAM_DIFFERS, growth_left, other_way
-from .peaks import Peaks
+from .peaks import LEAST_WINDOWS, Peaks
 from .state import State
 from .toes import Toes
 from .traverse import Traverse
@@ -63,6 +63,19 @@ class BeamDrive(Lead):
     def other_way(self, curve: Array) -> str:
         """Note on the largest reaction in the other direction of a cyclic drive."""
         return other_way(self.goals, curve)
+
+    def too_fast(self) -> str:
+        """Note on a rate whose double, at which the path is also followed, has not two time steps for each row.
+
+        Rows have two steps at least: the drive is then slower than that, as slow at both speeds, and they would agree.
+        """
+        rate = None if self.scene.drive is None else self.scene.drive.rate
+        most = self.longest / (2 * ROWS * LEAST_WINDOWS * self.run.dt)
+        if rate is None or rate <= most:
+            return ""
+        return (
+            f"beam.drive.rate = {rate:g}: is too fast for its time steps; give at most {two_digits(most)} m/s, or none"
+        )
 
     def growth_left(self, traverse: Traverse) -> float:
         """Force [N] by which the answer may grow beyond the end of the path, at small displacements.

@@ -169,6 +169,10 @@ class Lead(ABC):
         works = np.array([row.works[1] for row in traverse.rows[:until]])
         return friction_note(self.scene, friction, works, self.least_friction, tolerance, differs=differs)
 
+    def too_fast(self) -> str:
+        """Note on a rate that is too fast for time steps to follow; may be empty."""
+        return ""
+
     def before(self, curve: Array) -> str:
         """Note on the part of a curve ``(n, 2)`` before the answer; may be empty."""
         return ""

@@ -14,6 +14,9 @@ from .state import State
 WINDOW_STEPS = 50
 """Least number of steps in windows shorter than a row."""
 
+LEAST_WINDOWS = 2
+"""Least number of windows in a row, of one step each at least."""
+
 RESOLVED_GAIN = 2.5e-3
 """Relative increase of a peak by windows half as long up to which the peak is resolved."""
 

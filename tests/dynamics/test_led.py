@@ -1,7 +1,8 @@
 """Ties, driven beams and moving supports in the two dynamic models, against statics."""
 
+import re
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -380,6 +381,21 @@ def test_given_drive_rate_is_kept() -> None:
     assert fast.steps is not None
     assert slow.steps == pytest.approx(2 * fast.steps, rel=0.02)
     assert "at its rate and at twice that" in slow.message
+
+
+@pytest.mark.parametrize("displacements", ["small", "finite"])
+def test_rate_that_is_too_fast_for_time_steps_has_no_answer(displacements: Literal["small", "finite"]) -> None:
+    """Rows have two steps at least: both traverses were equally slow, and agreed on the inertia of the wall."""
+
+    def driven(rate: float) -> Outcome:
+        scene = under_beam("free", {"displacement": [0.0005, 0], "rate": rate})
+        return dem_dynamic(scene, 0.01, displacements=displacements)
+
+    for rate in (2.0, 50.0):
+        outcome = driven(rate)
+        assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", None, None)
+    told = re.findall(r"is too fast for its time steps; give at most ([\d.]+) m/s", outcome.message)
+    assert "too fast" not in driven(0.9 * float(told[0])).message
 
 
 @pytest.mark.parametrize("model", MODELS)
