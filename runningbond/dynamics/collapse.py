@@ -187,4 +187,4 @@ def crushing_note(run: Run, state: State) -> str:
     else:
         return ""
     note = "carry bending at points, with an error of up to 3 % that the bracket does not include"
-    return f"{joints} {note}; loads of walls that hardly stand may be off by more"
+    return f"{joints} {note}; loads of arches, and of walls that hardly stand, may be off by more"

@@ -259,14 +259,14 @@ def _judge(
     # The motion under the suddenly applied dead load does not count; afterwards that load may do almost no work.
     try:
         lost = _unaccounted(run, result, result.fallen)
+        locks = _may_lock(run, result, criteria, is_self_locking)
     except KeyboardInterrupt:
         return replace(outcome, message="interrupted: the bracket so far")
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if excluded:
         return replace(outcome, message=excluded)
-    moved = run.system.farthest(result.borne.motion - result.rests[0][1].motion, criteria.collapse)
-    if moved > 1 and is_self_locking():
+    if locks:
         far = "at rest it has moved as far as counts as collapse"
         message = f"self-locking: {far}, and joint forces balance any multiple of the load"
         return replace(outcome, status="unbounded", lower=None, upper=None, motion=np.zeros((0, 3)), message=message)
@@ -288,6 +288,18 @@ def _doubt(scene: Scene, run: Run, loaded: State, borne: State, tolerance: float
     friction = run.ledger(borne).friction - run.ledger(loaded).friction
     live = np.array([state.external - run.dead_work(state) for state in (loaded, borne)])
     return friction_note(scene, friction, live, 0.0, tolerance, differs=LOAD_DIFFERS)
+
+
+def _may_lock(run: Run, result: LoadSteps, criteria: Criteria, is_self_locking: Callable[[], bool]) -> bool:
+    """Whether a wall that forces hold under any load went as far as a fall only because its joints are soft.
+
+    Such forces do not exclude a collapse under true friction: a wall that falls on and on does not lock.
+    """
+    loaded = result.rests[0][1]
+    if result.borne is None or result.fallen is None or result.fall is None:
+        return False
+    moved = run.system.farthest(result.borne.motion - loaded.motion, criteria.collapse)
+    return moved > 1 and is_self_locking() and result.fall.goes_on(result.fallen, loaded) != "collapse"
 
 
 def _unaccounted(run: Run, result: LoadSteps, fallen: State) -> float:
@@ -312,15 +324,17 @@ def _never_fallen(
     above: float | None,
 ) -> Outcome:
     """Outcome of a wall that did not fall under any load."""
-    self_locking = is_self_locking()
-    if self_locking and result.verdict == "stable":
-        message = "self-locking: it carried every load tried, and joint forces balance any multiple of the load"
-        return replace(outcome, status="unbounded", message=message)
-    message = f"it carried every load tried, up to {result.lower:.3g}"
+    self_locking, far = is_self_locking(), ""
     if result.far and result.borne is not None:
         moved = np.hypot(*run.system.motion_of_blocks(result.borne.motion - result.rests[0][1].motion)[:, :2].T)
         block = scene.blocks.name(int(moved.argmax()))
-        message += f", at which {block} has moved {moved.max():.2g} m: too far for small displacements"
+        far = f", up to {result.lower:.3g}, at which {block} has moved {moved.max():.2g} m"
+        far += ": too far for small displacements"
+    if self_locking and result.verdict == "stable":
+        message = f"self-locking: it carried every load tried{far}, and joint forces balance any multiple of the load"
+        return replace(outcome, status="unbounded", message=message)
+    message = f"it carried every load tried{far or f', up to {result.lower:.3g}'}"
+    if far:
         message += ", or nothing holds it" if above is None else f"; limit analysis proves {number(above)} too much"
     if result.verdict != "stable":
         message = "the budget ran out: the wall neither rested nor fell"

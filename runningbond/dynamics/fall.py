@@ -12,7 +12,7 @@ import numpy as np
 
 from runningbond.joints.wall_law import counted_in_impacts
 
-from .collapse import Criteria, hold_load
+from .collapse import Criteria, Verdict, hold_load, settle
 from .run import Run
 from .state import State
 
@@ -25,6 +25,12 @@ class Fall:
     start: State
     multiplier: float
     criteria: Criteria
+
+    def goes_on(self, end: State, since: State) -> Verdict:
+        """Verdict on a fall that is followed from its `end` on, until the wall has moved again by all since a rest."""
+        unit = self.run.system.farthest(end.motion - since.motion, self.criteria.collapse)
+        criteria = replace(self.criteria, collapse=self.criteria.collapse * max(1.0, unit))
+        return settle(self.run, end.copy(), self.multiplier, criteria)
 
     def unaccounted(self, since: State) -> float | None:
         """As `Run.unaccounted` at the end of the fall, with mean tractions; None for a law that has no such ledger."""

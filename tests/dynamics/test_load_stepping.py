@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import runningbond as rb
 from dem.dynamic import dem_dynamic, quasi_static_run
 from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
@@ -18,7 +19,7 @@ from runningbond.dynamics import U_CRIT, Criteria, LoadSteps, Run, State, collap
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.growth import FASTER, LOOKS, Growth, ramp
 from runningbond.dynamics.load_stepping import RESOLVED, smallest_width
-from runningbond.limit import limit
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.scene import Array, Scene, read_scene
 from tests.at_length import at_length
 from tests.fem_interface.walls import MORTAR
@@ -86,6 +87,61 @@ def test_message_names_unrestrained_block_that_drifts_away() -> None:
     assert outcome.status == "undecided"
     assert "it carried every load tried" in outcome.message
     assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
+
+
+def arch(half: float, thickness: float, live: dict[str, Any], count: int, **joint: float) -> Scene:
+    """An arch of `count` voussoirs on a mean radius of 1 m, which spans twice the angle `half` between abutments."""
+    angles = np.linspace(np.pi / 2 - half, np.pi / 2 + half, count + 1)
+    ray = np.column_stack([np.cos(angles), np.sin(angles)])
+    inner, outer = (radius * ray for radius in (1 - thickness / 2, 1 + thickness / 2))
+    stones = [[inner[k], outer[k], outer[k + 1], inner[k + 1]] for k in range(count)]
+    back = 0.3 * np.column_stack([ray[:, 1], -ray[:, 0]])
+    ground = [
+        [inner[k], inner[k] + side * back[k], outer[k] + side * back[k], outer[k]] for k, side in ((0, 1), (-1, -1))
+    ]
+    return rb.Wall.outlines(stones, ground, thickness=1.0, density=2000.0, live=live, **joint).scene
+
+
+def arch_of_three(stiffness: float, live: dict[str, Any]) -> Scene:
+    """Three voussoirs of 0.3 m that span 78 degrees."""
+    joint = {"friction": 0.92, "normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness}
+    return arch(0.684, 0.296, live, 3, **joint)
+
+
+@pytest.mark.parametrize("stiffness", [1e10, 1e8, 1e7])
+def test_collapse_under_true_friction_is_found_on_soft_joints_although_forces_balance_any_load(
+    stiffness: float,
+) -> None:
+    """The largest load at rest moves soft joints as far as a fall; for that reason alone the arch passed as locked."""
+    scene = arch_of_three(stiffness, {"kind": "lateral"})
+    assert limit(scene).status == "unbounded"
+    certified = limit_nonassociated(scene).upper
+    outcome = dem_dynamic(scene)
+    assert outcome.status == "collapse", outcome.message
+    assert certified is not None
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower * 0.99 < certified < outcome.upper * 1.01
+
+
+def test_message_says_how_far_a_wall_that_locks_was_followed() -> None:
+    live = {"kind": "point", "at": [0.0, 1.0], "force": [0.0, -1000.0]}
+    outcome = dem_dynamic(arch_of_three(1e6, live))
+    assert outcome.status == "unbounded", outcome.message
+    assert "self-locking: it carried every load tried, up to " in outcome.message
+    assert "m: too far for small displacements, and joint forces balance any multiple of the load" in outcome.message
+
+
+def test_message_says_that_arches_are_sensitive_to_how_crushed_joints_bend() -> None:
+    """Hinges a hundredth of a joint farther inwards at nine points take 5.5 % of the load of a semicircular arch."""
+    crown = {"kind": "point", "at": [0.0, 1.1], "force": [0.0, -1.0]}
+    joint = {"friction": 3.0, "compressive_strength": 1.2e6, "cap_shear": 0.0, "normal_stiffness": 1e11}
+    scene = arch(np.pi / 2, 0.2, crown, 4, **joint, shear_stiffness=4e10)
+    outcome, bound = dem_dynamic(scene), limit(scene)
+    assert outcome.upper is not None
+    assert bound.lower is not None
+    assert 0.93 * bound.lower < outcome.upper < 0.97 * bound.lower
+    assert "loads of arches, and of walls that hardly stand, may be off by more" in outcome.message
 
 
 def test_sudden_dead_load_does_not_throw_an_unrestrained_block() -> None:
