@@ -89,7 +89,7 @@ def test_message_names_unrestrained_block_that_drifts_away() -> None:
     assert "at which block 4 at (0.8, 0.15) has moved 1 m" in outcome.message
 
 
-def arch(half: float, thickness: float, live: dict[str, Any], count: int, **joint: float) -> Scene:
+def arch(half: float, thickness: float, live: dict[str, Any], count: int, **joint: Any) -> Scene:
     """An arch of `count` voussoirs on a mean radius of 1 m, which spans twice the angle `half` between abutments."""
     angles = np.linspace(np.pi / 2 - half, np.pi / 2 + half, count + 1)
     ray = np.column_stack([np.cos(angles), np.sin(angles)])
