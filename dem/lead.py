@@ -3,7 +3,6 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from runningbond.dynamics.path_curve import friction_note
 from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Scene
 
-from .load_path import StaticState
+from .load_path import StaticState, friction_work
 from .static_system import Control, StaticSystem
 
 MIN_STEPS = 25
@@ -117,11 +116,7 @@ class StaticLead(ABC):
 
     def friction_note(self, states: Sequence[StaticState], works: Array, tolerance: float, differs: str) -> str:
         """The note of `friction_note` for states on the way to an answer, and works of the drive ``(n,)`` [J]."""
-        count, equations = len(states[0].force), self.system.equilibrium
-        slid = (np.abs(after.plastic_slip - before.plastic_slip)[:count] for before, after in pairwise(states))
-        shear = (np.abs(after.force[:, 1] + before.force[:, 1]) / 2 for before, after in pairwise(states))
-        friction = sum(float(each @ way) for each, way in zip(shear, slid, strict=True))
-        friction *= equations.force_unit * self.system.length_unit
+        friction = friction_work(self.system, states)
         return friction_note(self.scene, friction, works, self.least_work, tolerance, differs=differs)
 
     @property

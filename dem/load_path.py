@@ -5,8 +5,9 @@ work-conjugate displacement f_live · q of the live load is prescribed instead, 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -145,3 +146,12 @@ def state_of(system: StaticSystem, rest: Rest) -> StaticState:
     force, joints = np.column_stack([rest.response.normal, rest.response.tangential]), len(system.equilibrium.points)
     displacement = dot(system.equilibrium.live, rest.x[: system.freedoms])
     return StaticState(rest.x, rest.response.plastic_slip, force[:joints], displacement, force[joints:, 0])
+
+
+def friction_work(system: StaticSystem, states: Sequence[StaticState]) -> float:
+    """Work of friction [J] from the first to the last of some states."""
+    count = len(states[0].force)
+    slid = (np.abs(after.plastic_slip - before.plastic_slip)[:count] for before, after in pairwise(states))
+    shear = (np.abs(after.force[:, 1] + before.force[:, 1]) / 2 for before, after in pairwise(states))
+    work = sum(float(each @ way) for each, way in zip(shear, slid, strict=True))
+    return work * system.equilibrium.force_unit * system.length_unit

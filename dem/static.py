@@ -22,6 +22,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from runningbond.dynamics.path_curve import LOCK_DIFFERS, friction_note
 from runningbond.joints import ends_note, stiffness_note
 from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.associated import is_self_locking, proved_outcome
@@ -32,7 +33,7 @@ from runningbond.scene import Scene, check_scene
 
 from .climb import BUDGET_SPENT, INTERRUPTED, NO_VERDICT, climb, ends, look_closer, peak
 from .led import lead_along
-from .load_path import LoadPath, StaticObserver, no_observer, state_of
+from .load_path import LoadPath, StaticObserver, friction_work, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system, with_late_pins
 
@@ -155,7 +156,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
         cut = _look_closer(path, tolerance, past)
     for state in path.past if path is first else (*path.rests, *path.past):
         first.observe(path, state)
-    outcome = _judge(result, path)
+    outcome = _judge(result, path, tolerance)
     message = outcome.message
     if len(paths) > 1:
         other = f"with load steps {OTHER_STEP:g} times as long {_loads(paths[1])}"
@@ -190,7 +191,7 @@ def _loads(path: LoadPath) -> str:
     return "–".join(number(path.system.equilibrium.live_unit * end) for end in ends(path))
 
 
-def _judge(result: Outcome, path: LoadPath) -> Outcome:
+def _judge(result: Outcome, path: LoadPath, tolerance: float) -> Outcome:
     """Outcome with the verdict on a load path, and its arrays."""
     system, states = path.system, [*path.rests, *path.past]
     equations, best = system.equilibrium, peak(path)
@@ -225,7 +226,9 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
         if path.undecided == BUDGET_SPENT:
             message = f"no answer: {path.undecided}, though joint forces balance any multiple of the load"
             return replace(result, message=message)
-        message = f"self-locking: {path.undecided}, and joint forces balance any multiple of it"
+        friction, live = friction_work(system, path.rests), works[: len(path.rests), 1]
+        doubt = friction_note(equations.scene, friction, live, 0.0, tolerance, differs=LOCK_DIFFERS)
+        message = joined(f"self-locking: {path.undecided}, and joint forces balance any multiple of it", doubt)
         return replace(result, status="unbounded", lower=None, motion=np.zeros((0, 3)), message=message)
     return replace(result, message=f"no answer: {path.undecided}")
 

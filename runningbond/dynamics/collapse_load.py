@@ -21,7 +21,7 @@ from .dead_load import fall_under_dead_load
 from .inertia import beam_note
 from .led import UNACCOUNTED, LedWall, collapse_of_led
 from .load_stepping import LoadSteps, load_steps, smallest_width
-from .path_curve import LOAD_DIFFERS, friction_note
+from .path_curve import LOAD_DIFFERS, LOCK_DIFFERS, friction_note
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
@@ -250,7 +250,8 @@ def _judge(
     if result.upper is None or result.lower is None or result.fallen is None:
         if excluded:
             return replace(outcome, lower=result.lower, message=excluded)
-        return _never_fallen(outcome, scene, run, result, is_self_locking, above)
+        doubt = _doubt(scene, run, result, tolerance, LOCK_DIFFERS)
+        return _never_fallen(outcome, scene, run, result, is_self_locking, above, doubt)
     motion = _mechanism(scene, run, _fall(run, result, result.fallen))
     # A load that rises by a step overshoots to at most twice the step, and what breaks stays broken.
     overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
@@ -269,6 +270,7 @@ def _judge(
     if locks:
         far = "at rest it has moved as far as counts as collapse"
         message = f"self-locking: {far}, and joint forces balance any multiple of the load"
+        message = joined(message, _doubt(scene, run, result, tolerance, LOCK_DIFFERS))
         return replace(outcome, status="unbounded", lower=None, upper=None, motion=np.zeros((0, 3)), message=message)
     if result.verdict == "undecided":
         return replace(outcome, message="the budget ran out inside this bracket: the wall neither rested nor fell")
@@ -279,15 +281,18 @@ def _judge(
         f"largest load at rest and smallest in collapse{beyond}, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}"
     )
-    message = joined(message, _doubt(scene, run, result.rests[0][1], result.borne, tolerance))
+    message = joined(message, _doubt(scene, run, result, tolerance, LOAD_DIFFERS))
     return replace(outcome, status="collapse", multiplier=(result.lower + upper) / 2, message=message)
 
 
-def _doubt(scene: Scene, run: Run, loaded: State, borne: State, tolerance: float) -> str:
-    """Note on a load that depends on how joints slid after a wall had rested under its dead load."""
+def _doubt(scene: Scene, run: Run, result: LoadSteps, tolerance: float, differs: str) -> str:
+    """Note on an answer that depends on how joints slid after a wall had rested under its dead load."""
+    if result.borne is None:
+        return ""
+    loaded, borne = result.rests[0][1], result.borne
     friction = run.ledger(borne).friction - run.ledger(loaded).friction
     live = np.array([state.external - run.dead_work(state) for state in (loaded, borne)])
-    return friction_note(scene, friction, live, 0.0, tolerance, differs=LOAD_DIFFERS)
+    return friction_note(scene, friction, live, 0.0, tolerance, differs=differs)
 
 
 def _may_lock(run: Run, result: LoadSteps, criteria: Criteria, is_self_locking: Callable[[], bool]) -> bool:
@@ -322,8 +327,9 @@ def _never_fallen(
     result: LoadSteps,
     is_self_locking: Callable[[], bool],
     above: float | None,
+    doubt: str,
 ) -> Outcome:
-    """Outcome of a wall that did not fall under any load."""
+    """Outcome of a wall that did not fall under any load, with a `doubt` if it locks."""
     self_locking, far = is_self_locking(), ""
     if result.far and result.borne is not None:
         moved = np.hypot(*run.system.motion_of_blocks(result.borne.motion - result.rests[0][1].motion)[:, :2].T)
@@ -332,7 +338,7 @@ def _never_fallen(
         far += ": too far for small displacements"
     if self_locking and result.verdict == "stable":
         message = f"self-locking: it carried every load tried{far}, and joint forces balance any multiple of the load"
-        return replace(outcome, status="unbounded", message=message)
+        return replace(outcome, status="unbounded", message=joined(message, doubt))
     message = f"it carried every load tried{far or f', up to {result.lower:.3g}'}"
     if far:
         message += ", or nothing holds it" if above is None else f"; limit analysis proves {number(above)} too much"

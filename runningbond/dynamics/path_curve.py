@@ -10,6 +10,7 @@ BEAM_DIFFERS = "give another reaction"
 SUPPORT_ANSWER = "share of the dead load on the support"
 SUPPORT_DIFFERS = "leave another share"
 LOAD_DIFFERS = "have another collapse load"
+LOCK_DIFFERS = "bring it down"
 
 LITTLE = 0.01
 """Fraction of the dead load below which a reaction need not be accurate relative to itself."""

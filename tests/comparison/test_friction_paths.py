@@ -1,9 +1,12 @@
 """Answers that depend on how joints slide: models that follow one path each end elsewhere, and say so."""
 
+from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 
+import runningbond as rb
 from runningbond.models import run_model
 from runningbond.scene import Scene
 from tests.walls import courses
@@ -104,3 +107,33 @@ def test_stack_that_slides_or_topples_has_one_collapse_load(friction: float, exa
     pushed = run_model("dem-dynamic", scene, displacements="finite", distance=0.005)
     assert pushed.multiplier == pytest.approx(exact, rel=0.02)
     assert SLIDES not in pushed.message
+
+
+def test_wall_that_locks_on_one_path_may_collapse_on_another() -> None:
+    """A flat arch of three stones between two piers under a course and a floor.
+
+    Forces that balance any load are admissible under true friction, too, but need not be those that come about.
+    """
+    span, height, skew, pier, top = 1.3, 0.25, 0.14, 0.8, 0.45
+    below, above = np.linspace(0, span, 4), np.linspace(-skew, span + skew, 4)
+    sides = [(below[k], below[k + 1], above[k + 1], above[k]) for k in range(3)]
+    sides += [(-pier, 0.0, -skew, -pier), (span, span + pier, span + pier, span + skew)]
+    stones = [[(a, 0.0), (b, 0.0), (c, height), (d, height)] for a, b, c, d in sides]
+    stones += [[(x, -1.4), (x + pier, -1.4), (x + pier, 0.0), (x, 0.0)] for x in (-pier, span)]
+    ends = np.linspace(-pier, span + pier, 6)
+    stones += [[(left, height), (right, height), (right, top), (left, top)] for left, right in pairwise(ends)]
+    scene = rb.Wall.outlines(
+        stones,
+        thickness=0.3,
+        density=2000.0,
+        friction=0.7,
+        normal_stiffness=4e9,
+        shear_stiffness=1.6e9,
+        live={"kind": "line", "from": [0.0, top], "to": [span, top], "force": [0.0, -1000.0]},
+    ).scene
+    assert run_model("limit", scene).status == "unbounded"
+    assert run_model("limit-nonassociated", scene).lower == pytest.approx(12.04, abs=0.01)
+    for model in ("dem-static", "dem-dynamic"):
+        outcome = run_model(model, scene)
+        assert outcome.status == "unbounded", outcome.message
+        assert f"{SLIDES}bring it down" in outcome.message
