@@ -70,6 +70,15 @@ def inserts(document: Any, space: Any) -> None:
     space.add_blockref("PAIR", (0, 200), dxfattribs={"xscale": 200, "yscale": 100})
 
 
+def turned_inserts(document: Any, space: Any) -> None:
+    """One brick of unit size, turned upright in a block that is stretched."""
+    document.blocks.new("BRICK").add_lwpolyline(box(0, 0, 1, 1), close=True)
+    document.blocks.new("UPRIGHT").add_blockref("BRICK", (1, 0), dxfattribs={"rotation": 90})
+    for (left, bottom), _, (right, top), _ in BRICKS:
+        scales = {"xscale": right - left, "yscale": top - bottom}
+        space.add_blockref("UPRIGHT", (left, bottom), dxfattribs=scales)
+
+
 WAYS: dict[str, Draw] = {
     "closed": closed(),
     "nearly closed": nearly_closed,
@@ -79,6 +88,7 @@ WAYS: dict[str, Draw] = {
     "halves": halves,
     "cut outlines": cut_outline,
     "inserts": inserts,
+    "turned inserts": turned_inserts,
 }
 
 
@@ -430,6 +440,27 @@ def arch_load(draw: Draw, folder: Path) -> float:
 @pytest.mark.parametrize("draw", [of_arcs, of_two_arcs, mirrored])
 def test_multiplier_of_an_arch_does_not_depend_on_how_it_is_drawn(draw: Draw, tmp_path: Path) -> None:
     assert arch_load(draw, tmp_path) == pytest.approx(arch_load(bulged, tmp_path), rel=1e-9)
+
+
+def sheared(document: Any, space: Any) -> None:
+    """The polylines as one voussoir of a squeezed arch, turned from place to place in a block that is stretched."""
+    voussoir, arch = document.blocks.new("VOUSSOIR"), document.blocks.new("ARCH")
+    step = math.pi / STONES
+    corners, bulge = [at(INNER, 0), at(OUTER, 0), at(OUTER, step), at(INNER, step)], math.tan(step / 4)
+    rows = [(x / 2, y / 2, c) for (x, y), c in zip(corners, (0, bulge, 0, -bulge), strict=True)]
+    voussoir.add_lwpolyline(rows, "xyb", close=True)
+    for k in range(STONES):
+        arch.add_blockref("VOUSSOIR", (0, 0), dxfattribs={"rotation": math.degrees(k * step)})
+    space.add_blockref("ARCH", (0, 0), dxfattribs={"xscale": 2, "yscale": 2.5})
+
+
+def test_inserts_turned_in_a_stretched_one_are_sheared(tmp_path: Path) -> None:
+    """An elliptic arch whose stones all touch."""
+    scene = scene_of(dxf(tmp_path / "wall.dxf", sheared, SPRINGINGS, ground=False))
+    round_arch = scene_of(dxf(tmp_path / "round.dxf", bulged, SPRINGINGS, ground=False))
+    assert len(scene.joints) == STONES + 1
+    assert scene.blocks.area[scene.wall] == pytest.approx(1.25 * round_arch.blocks.area[round_arch.wall], rel=1e-3)
+    assert scene.blocks.area[scene.wall].sum() == pytest.approx(1.25e-6 * math.pi / 2 * (OUTER**2 - INNER**2), rel=1e-3)
 
 
 def test_arch_multiplier_converges_quadratically_in_the_chord_length(

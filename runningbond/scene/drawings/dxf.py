@@ -21,6 +21,9 @@ MAX_ENTITIES = 300_000
 MAX_INSERT_DEPTH = 32
 """Maximum nesting depth of INSERTs."""
 
+FLAT = 1e-6
+"""Height above the drawing's plane, relative to the extent of a curve, up to which a curve lies in a plane."""
+
 VIEWPORT = "VIEWPORT"
 """Entity that shows the model on a sheet of the paper space; it draws nothing itself."""
 
@@ -75,8 +78,8 @@ def read_dxf(path: Path) -> ModelSpace:
         document = readfile(path)
         left_out: Counter[tuple[str, str]] = Counter()
         drawn = []
-        for entity, layer, name in _Walk(document, left_out).all():
-            curve = _curve(entity, layer, name)
+        for entity, layer, name, placed in _Walk(document, left_out).all():
+            curve = _curve(entity, layer, name, placed)
             if curve is None:
                 left_out[entity.dxftype(), f"on layer {layer}"] += 1
             elif curve.has_length:
@@ -103,31 +106,41 @@ def read_dxf(path: Path) -> ModelSpace:
 
 
 class _Walk:
-    """Iteration over the entities of a model space, with INSERTs exploded, each with its layer and name."""
+    """Iteration over the entities of a model space, with INSERTs exploded, each with its layer, name and placement.
+
+    Placements ``(4, 4)`` multiply row vectors (x, y, z, 1) from the right. ezdxf does not explode INSERTs here, because
+    it ignores the shear of one that is rotated within another that is stretched.
+    """
 
     def __init__(self, document: Any, left_out: Counter[tuple[str, str]]) -> None:
         self._document, self._left_out, self._seen = document, left_out, 0
         self._layers = {_decoded(layer.dxf.name).lower(): layer for layer in document.layers}
 
-    def all(self) -> Iterator[tuple[Any, str, str]]:
+    def all(self) -> Iterator[tuple[Any, str, str, Array]]:
         """All visible entities."""
-        return self._within(self._document.modelspace(), None, "", 0)
+        return self._within(self._document.modelspace(), None, "", np.eye(4), 0)
 
-    def _within(self, entities: Any, owner: str | None, within: str, depth: int) -> Iterator[tuple[Any, str, str]]:
+    def _within(
+        self, entities: Any, owner: str | None, within: str, placed: Array, depth: int
+    ) -> Iterator[tuple[Any, str, str, Array]]:
         for entity in entities:
             self._count(1)
             kind, own = entity.dxftype(), entity.dxf.get("layer", "0")
+            if kind == "ATTDEF" and owner is not None:  # shown are the attributes of the INSERT
+                continue
             layer = owner if owner is not None and own == "0" else self._spelt(own)
             name = f"{KEY}, {kind} {entity.dxf.handle}" if not within else f"{within}, {kind}"
             hidden = self._hidden(layer)
             if entity.dxf.get("invisible", 0) or (hidden and (kind != "INSERT" or hidden == "frozen")):
                 self._left_out[kind, f"on layer {layer}, " + (f"which is {hidden}" if hidden else "invisible")] += 1
             elif kind == "INSERT":
-                yield from self._exploded(entity, layer, name, depth)
+                yield from self._exploded(entity, layer, name, placed, depth)
             else:
-                yield entity, layer, name
+                yield entity, layer, name, placed
 
-    def _exploded(self, insert: Any, layer: str, name: str, depth: int) -> Iterator[tuple[Any, str, str]]:
+    def _exploded(
+        self, insert: Any, layer: str, name: str, placed: Array, depth: int
+    ) -> Iterator[tuple[Any, str, str, Array]]:
         if depth == MAX_INSERT_DEPTH:
             raise SceneError(name, f"nests INSERTs more than {MAX_INSERT_DEPTH} deep, or in themselves")
         if insert.block() is None or insert.block().block.is_xref:
@@ -137,13 +150,9 @@ class _Walk:
         self._count(insert.dxf.row_count * insert.dxf.column_count if several else 1)
         for attribute in insert.attribs:
             self._left_out[attribute.dxftype(), f"on layer {layer}"] += 1
-
-        def skipped(entity: Any, _: str) -> None:
-            self._left_out[entity.dxftype(), f"on layer {layer}"] += 1
-
         for one in insert.multi_insert() if several else [insert]:
-            parts = one.virtual_entities(skipped_entity_callback=skipped)
-            yield from self._within(parts, layer, name, depth + 1)
+            own = np.array(list(one.matrix44())).reshape(4, 4)
+            yield from self._within(insert.block(), layer, name, own @ placed, depth + 1)
 
     def _spelt(self, layer: str) -> str:
         """Name of a layer as spelt in the layer table: names that differ only in case are the same layer."""
@@ -169,26 +178,28 @@ def _decoded(name: str) -> str:
     return str(decode_dxf_unicode(name))
 
 
-def _curve(entity: Any, layer: str, name: str) -> Drawn | None:
+def _curve(entity: Any, layer: str, name: str, placed: Array) -> Drawn | None:
     """An entity as a curve; None if it is not a curve."""
     kind = entity.dxftype()
     closed = False
     if kind == "LINE":
-        pieces: list[Array | Arc] = [_flat([entity.dxf.start, entity.dxf.end], name)]
+        pieces: list[Array | Arc] = [_flat([entity.dxf.start, entity.dxf.end], name, placed)]
     elif kind in ("LWPOLYLINE", "POLYLINE"):
-        pieces, closed = _polyline(entity, name)
+        pieces, closed = _polyline(entity, name, placed)
     elif kind in ("ARC", "CIRCLE", "ELLIPSE"):
-        arc = _ellipse(entity, name) if kind == "ELLIPSE" else _circle(entity, name)
+        arc = _ellipse(entity, name, placed) if kind == "ELLIPSE" else _circle(entity, name, placed)
         pieces, closed = [arc], arc.closed
     elif kind == "SPLINE":
-        points = spline_points(entity.construction_tool())
-        pieces, closed = [_flat(points, name)], bool(entity.closed)
+        from ezdxf.math import Matrix44
+
+        points = spline_points(entity.construction_tool().transform(Matrix44(placed.ravel())))
+        pieces, closed = [_flat(points, name, np.eye(4))], bool(entity.closed)
     else:
         return None
     return Drawn(layer, name, tuple(pieces), closed)
 
 
-def _polyline(entity: Any, name: str) -> tuple[list[Array | Arc], bool]:
+def _polyline(entity: Any, name: str, placed: Array) -> tuple[list[Array | Arc], bool]:
     if entity.dxftype() == "LWPOLYLINE":
         points, bulges = list(entity.vertices_in_wcs()), [row[0] for row in entity.get_points("b")]
         closed = entity.closed
@@ -199,41 +210,54 @@ def _polyline(entity: Any, name: str) -> tuple[list[Array | Arc], bool]:
         bulges, closed = [v.dxf.bulge for v in corners], entity.is_closed
     else:
         raise SceneError(KEY, "holds a mesh; each block is one closed polyline")
-    flat = _flat(points, name)
-    sense = -1 if entity.dxf.extrusion.z < 0 else 1
-    if any(bulges):
-        _check_axis(entity, name)
+    flat = _flat(points, name, placed)
+    own = _finite(np.array([tuple(p) for p in entity.ocs().points_from_wcs(points)]).reshape(-1, 3), name)
     pieces: list[Array | Arc] = []
-    following = np.roll(flat, -1, axis=0)
-    for p, q, bulge in list(zip(flat, following, bulges, strict=True))[: len(flat) if closed else -1]:
-        if (p != q).any():
-            pieces.append(Arc.from_bulge(p, q, sense * bulge) if abs(bulge) > 1e-12 else np.array([p, q]))
+    for k in range(len(flat) if closed else len(flat) - 1):
+        following = (k + 1) % len(flat)
+        if (flat[k] == flat[following]).all():
+            continue
+        if abs(bulges[k]) > 1e-12:
+            arc = Arc.from_bulge(own[k, :2], own[following, :2], bulges[k])
+            pieces.append(_placed_arc(entity, arc, float(own[k, 2]), name, placed))
+        else:
+            pieces.append(flat[[k, following]])
     return pieces, bool(closed)
 
 
-def _circle(entity: Any, name: str) -> Arc:
-    _check_axis(entity, name)
-    system, radius = entity.ocs(), entity.dxf.radius
-    centre, along, up = (system.to_wcs(p) for p in (entity.dxf.center, (radius, 0, 0), (0, radius, 0)))
+def _circle(entity: Any, name: str, placed: Array) -> Arc:
+    x, y, z = entity.dxf.center
     start, sweep = 0.0, TURN
     if entity.dxftype() == "ARC":
         start = float(np.radians(entity.dxf.start_angle))
         sweep = _sweep(start, float(np.radians(entity.dxf.end_angle)))
-    return _arc(centre, along, up, start, sweep, name)
+    arc = Arc(np.array([x, y]), entity.dxf.radius * np.eye(2), start, sweep)
+    return _placed_arc(entity, arc, z, name, placed)
 
 
-def _ellipse(entity: Any, name: str) -> Arc:
-    _check_axis(entity, name)
+def _placed_arc(entity: Any, arc: Arc, elevation: float, name: str, placed: Array) -> Arc:
+    """An arc in the coordinate system of an entity, at a height above its plane, as an arc of the drawing."""
+    system = entity.ocs()
+    centre, along, up = (
+        system.to_wcs((x, y, z)) for (x, y), z in [(arc.centre, elevation), (arc.axes[0], 0), (arc.axes[1], 0)]
+    )
+    return _arc(centre, along, up, arc.start, arc.sweep, name, placed)
+
+
+def _ellipse(entity: Any, name: str, placed: Array) -> Arc:
     start, sweep = entity.dxf.start_param, _sweep(entity.dxf.start_param, entity.dxf.end_param)
-    return _arc(entity.dxf.center, entity.dxf.major_axis, entity.minor_axis, start, sweep, name)
+    return _arc(entity.dxf.center, entity.dxf.major_axis, entity.minor_axis, start, sweep, name, placed)
 
 
-def _arc(centre: Any, along: Any, up: Any, start: float, sweep: float, name: str) -> Arc:
-    axes = np.array([[along[0], along[1]], [up[0], up[1]]])
-    if not abs(np.linalg.det(axes)) > 0:
+def _arc(centre: Any, along: Any, up: Any, start: float, sweep: float, name: str, placed: Array) -> Arc:
+    _finite(np.array([start, sweep]), name)
+    middle = _moved([centre], placed, name)[0]
+    axes = _moved([along, up], placed * np.array([[1], [1], [1], [0]]), name)
+    if (np.abs(axes[:, 2]) > FLAT * np.abs(axes[:, :2]).max()).any():
+        raise SceneError(name, "does not lie in the drawing's plane")
+    if not abs(np.linalg.det(axes[:, :2])) > 0:
         raise SceneError(name, "has no radius")
-    _finite(np.array([[start, sweep]]), name)
-    return Arc.along(_finite(np.array([[centre[0], centre[1]]]), name)[0], _finite(axes, name), start, sweep)
+    return Arc.along(middle[:2], axes[:, :2], start, sweep)
 
 
 def _sweep(start: float, end: float) -> float:
@@ -241,18 +265,19 @@ def _sweep(start: float, end: float) -> float:
     return TURN if sweep < 1e-12 or sweep > TURN - 1e-12 else float(sweep)
 
 
-def _flat(points: Any, name: str) -> Array:
+def _flat(points: Any, name: str, placed: Array) -> Array:
     """Points in space as points ``(n, 2)`` of the drawing's plane; they must lie in it or in a parallel plane."""
-    found = _finite(np.array([(p[0], p[1], p[2]) for p in points], dtype=float).reshape(-1, 3), name)
-    if len(found) and np.ptp(found[:, 2]) > 1e-6 * np.ptp(found[:, :2], axis=0).max():
+    found = _moved(points, placed, name)
+    if len(found) and np.ptp(found[:, 2]) > FLAT * np.ptp(found[:, :2], axis=0).max():
         raise SceneError(name, "does not lie in the drawing's plane")
     return found[:, :2]
 
 
-def _check_axis(entity: Any, name: str) -> None:
-    axis = entity.dxf.extrusion
-    if abs(axis.x) + abs(axis.y) > 1e-9 * abs(axis.z):
-        raise SceneError(name, "does not lie in the drawing's plane")
+def _moved(points: Any, placed: Array, name: str) -> Array:
+    """Points in space ``(n, 3)`` after a placement."""
+    rows = _finite(np.array([(p[0], p[1], p[2]) for p in points], dtype=float).reshape(-1, 3), name)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _finite(rows @ placed[:3, :3] + placed[3, :3], name)
 
 
 def _finite(values: Array, name: str) -> Array:
