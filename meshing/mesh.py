@@ -111,6 +111,14 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     )
 
 
+def not_meshed(scene: Scene) -> str:
+    """What holds a wall together but has no element in its mesh, for the user; empty if there is nothing."""
+    held = (int(scene.joints.at_corner.sum()), "corner that bears on a side", "corners that bear on sides")
+    ties = (len(scene.ties), "tie", "ties")
+    found = [f"{n} {one if n == 1 else several}" for n, one, several in (held, ties) if n]
+    return " and ".join(found) + f" {'has' if held[0] + ties[0] == 1 else 'have'} no element" if found else ""
+
+
 def _interfaces(scene: Scene, outline: NodeOutlines, first_node: Indices) -> tuple[Indices, Indices]:
     """Nodes of the joint elements ``(ne, 4)`` and the joint of each ``(ne,)``."""
     joint = np.repeat(np.arange(len(outline.divisions)), outline.divisions)

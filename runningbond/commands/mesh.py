@@ -1,15 +1,16 @@
 """``runningbond mesh``."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from meshing import check_suffix, wall_mesh, write_mesh
+from meshing import check_suffix, not_meshed, wall_mesh, write_mesh
 from runningbond.compare.published import find_scene
 from runningbond.scene import read_scene
 
-from .terminal import DONE, SceneName, Whole
+from .terminal import DONE, SceneName, Whole, remarks
 
 
 def mesh(
@@ -35,4 +36,7 @@ def mesh(
     print(
         f"{out}: {len(meshed.points)} nodes, {len(meshed.triangles)} triangles, {len(meshed.interfaces)} joint elements"
     )
+    lacking = not_meshed(wall)
+    for line in (*((f"note: {lacking}",) if lacking else ()), *remarks(wall)):
+        print(line, file=sys.stderr)
     return DONE

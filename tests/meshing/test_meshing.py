@@ -538,6 +538,25 @@ def test_command_writes_a_mesh(suffix: str, tmp_path: Path, capsys: pytest.Captu
 
 
 @pytest.mark.parametrize(
+    ("ties", "said"),
+    [
+        (0, "1 corner that bears on a side has no element"),
+        (2, "1 corner that bears on a side and 2 ties have no element"),
+    ],
+)
+def test_command_tells_what_has_no_element(
+    ties: int, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A stone that stands on its corner, with no joint at all."""
+    stones = [[[0, 0], [1, 0], [1, 0.5], [0, 0.5]], [[0.5, 0.5], [0.8, 0.8], [0.5, 1.1], [0.2, 0.8]]]
+    wall = content(wall={"outlines": stones, "thickness": 0.2})
+    bar = {"from": [0.5, 0.8], "to": [2, 0.8], "area": 1e-4, "young": 2e11, "yield": 1e4}
+    file = write_toml(wall | ({"tie": ties * [bar]} if ties else {}), tmp_path / "wall.toml")
+    assert command(["mesh", str(file), "-o", str(tmp_path / "wall.vtu")]) == 0
+    assert f"note: {said}\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["panel-01", "-o", "wall.stl"], "wall.stl: must end in .msh or .vtu, the formats of a mesh"),
