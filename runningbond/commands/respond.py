@@ -1,7 +1,6 @@
 """``runningbond respond``."""
 
 import json as to_json
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -19,7 +18,7 @@ from runningbond.results.store import RESPONSE_RECORD, save_response
 from runningbond.scene import read_scene
 
 from .left_behind import RESPONSE_FILES, holds_results, own_folder, remove_older
-from .terminal import DONE, NO_ANSWER, Json, SceneName, Together, progress_line, remarks
+from .terminal import DONE, NO_ANSWER, Json, SceneName, Together, progress_line, remarks, tell
 
 if TYPE_CHECKING:
     from runningbond.response import Response
@@ -62,10 +61,10 @@ def respond(
     with own_folder(out), progress_line(model, progress.line):
         response = respond_with(model, wall, scale, observe=Together(observers), **settings)
     for line in remarks(wall):
-        print(line, file=sys.stderr)
+        tell(line, error=True)
     summary = response.summary()
     text = f"{response.scene}: {response.model}, λ {scale:g}\n  {response.line}\n  {response.steps} steps, "
-    print(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s", flush=True)
+    tell(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s")
     if out is not None and recorder is not None:
         recorder.finish(Outcome(wall.title, response.model, "undecided", upper=scale))
         if is_used:

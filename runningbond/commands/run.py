@@ -1,7 +1,6 @@
 """``runningbond run``."""
 
 import json as to_json
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -41,6 +40,7 @@ from .terminal import (
     progress_line,
     remarks,
     report_interrupt,
+    tell,
 )
 
 OPTIONS = {"number": "--draws", "scatter": "--scatter"}
@@ -108,8 +108,8 @@ def run(
         with progress_line(chosen.name, progress.line if progress else None):
             outcome = run_model(chosen, wall, tolerance, Together(observers) if observers else None)
     for line in remarks(wall):  # after the run: if the model refuses the scene, only that line is printed
-        print(line, file=sys.stderr)
-    print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
+        tell(line, error=True)
+    tell(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome))
     if out is not None:
         remove_older(out)
         # An interrupted result has no fingerprint, and therefore no comparison reuses it.
@@ -155,14 +155,14 @@ def _draws(
     except Interrupted as stopped:
         return report_interrupt(stopped, number, "draws", folder)
     for line in remarks(wall):
-        print(line, file=sys.stderr)
+        tell(line, error=True)
     outcome = found.outcomes[0]
     if json:
-        print(to_json.dumps({**outcome.summary(), DRAWS: found.summary()}, allow_nan=False), flush=True)
+        tell(to_json.dumps({**outcome.summary(), DRAWS: found.summary()}, allow_nan=False))
     else:
-        print(_as_text(outcome))
+        tell(_as_text(outcome))
         print_table(found.sheet())
-        print(found, flush=True)
+        tell(str(found))
     if out is not None:
         remove_older(out)
         save_outcome(outcome, out, fingerprint(wall, model, tolerance), wall)

@@ -79,11 +79,19 @@ def report_interrupt(stopped: Interrupted, total: int, what: str, folder: Path |
     return NO_ANSWER if stopped.reason else STOPPED
 
 
-def print_table(sheet: Sheet) -> None:
-    """Print a table as wide as the terminal, or 180 characters wide if there is none.
+def tell(text: str, *, error: bool = False) -> None:
+    """Print to standard output, or to standard error, before results are written.
 
     If the reader has closed the pipe, as ``head`` does, nothing more is printed, and the command goes on.
     """
+    try:
+        print(text, file=sys.stderr if error else sys.stdout, flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2 if error else 1)
+
+
+def print_table(sheet: Sheet) -> None:
+    """`tell` a table as wide as the terminal, or 180 characters wide if there is none."""
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     table = Table(title=Text(sheet.title), title_justify="left")
     for head in sheet.heads:
@@ -92,10 +100,7 @@ def print_table(sheet: Sheet) -> None:
         table.add_row(*map(Text, row))
     with console.capture() as captured:
         console.print(table)
-    try:
-        print(captured.get(), end="", flush=True)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    tell(captured.get().removesuffix("\n"))
 
 
 def can_draw() -> bool:
@@ -143,7 +148,7 @@ def _progress_lines(description: str, total: int) -> Callable[[str], None]:
     count = 0
 
     def write(done: str, now: float) -> None:
-        print(f"{done}, {count} of {total}, {now - start:.0f} s", file=sys.stderr, flush=True)
+        tell(f"{done}, {count} of {total}, {now - start:.0f} s", error=True)
 
     def advance(done: str) -> None:
         nonlocal count, told

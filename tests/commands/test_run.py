@@ -227,6 +227,20 @@ def test_comparison_is_written_although_its_reader_closes_the_pipe(small: str, t
     assert (tmp_path / "out" / "report.html").is_file()
 
 
+@pytest.mark.parametrize("further", [[], ["--draws", "2"]])
+def test_run_is_saved_although_its_readers_close_their_pipes(further: list[str], small: str, tmp_path: Path) -> None:
+    """As with ``2>&1 | head -1``: the answer is printed before it is saved, and was then lost."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    model = "dem-static" if further else "limit"
+    line = [sys.executable, "-m", "runningbond", "run", small, "--model", model, "--out", str(tmp_path / "out")]
+    done = subprocess.run([*line, *further], stdout=writing, stderr=writing, check=False)
+    os.close(writing)
+    assert done.returncode == 0
+    assert load_outcome(tmp_path / "out")[0].status == "collapse"
+    assert (tmp_path / "out" / "mechanism.svg").is_file()
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_limit_stores_its_bracket_without_fingerprint(
     how: signal.Signals, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
