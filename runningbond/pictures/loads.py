@@ -75,7 +75,7 @@ class LoadDrawing:
         for (live, x, y), texts in self.pushes.items():
             self._push(np.array([x, y]), "\n+ ".join(texts), *_look(live))
         if load.gravity != EARTH and any(load.gravity):
-            draw_gravity(self.sketch, self.low, self.high, load.gravity)
+            draw_gravity(self.sketch, *self._around(), load.gravity)
 
     def _sizes_along(self, loads: Sequence[Action], *, live: bool) -> dict[int, str]:
         """Label of each line load by its `id`; a long chain of line loads gets one label with the range of its sizes.
@@ -290,10 +290,14 @@ class LoadDrawing:
         x, y = np.round(direction, 6).tolist()
         self.pushes.setdefault((live, x, y), []).append(times_lambda(size, live=live))
 
+    def _around(self) -> tuple[Array, Array]:
+        """Corners of the box around the wall and its displaced blocks."""
+        placed = self.shape.placed
+        return np.minimum(self.low, placed.min(axis=0)), np.maximum(self.high, placed.max(axis=0))
+
     def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
         """Draw a labelled row of arrows along the side that is pushed, clear of the displaced blocks."""
-        a, placed = self.a, self.shape.placed
-        low, high = np.minimum(self.low, placed.min(axis=0)), np.maximum(self.high, placed.max(axis=0))
+        a, (low, high) = self.a, self._around()
         flat = abs(direction[0]) >= abs(direction[1])
         inwards = np.array([np.sign(direction[0]), 0.0] if flat else [0.0, np.sign(direction[1])])
         across = np.abs(inwards[::-1])

@@ -557,6 +557,18 @@ def test_ground_tilts_to_side_of_load(drawn: Any) -> None:
     assert tilted[0] < 0 > tilted[1]
 
 
+def test_gravity_stays_clear_of_displaced_blocks() -> None:
+    """A wall that slides to the right, where gravity is drawn; the last vertex only closes the path of the arrow."""
+    scene = scene_from_dict(
+        wall(1.44, 0.72, (0.24, 0.06)) | {"load": {"gravity": [2.0, -9.81], "live": {"kind": "lateral"}}}
+    )
+    outcome = limit(scene)
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    (arrow,) = named(figure_of(scene, outcome), "gravity", FancyArrowPatch)
+    assert arrow.get_path().vertices[:-1, 0].min() > shape.placed[:, 0].max() > 1.5
+
+
 def shear(scene: Scene, factor: float) -> Array:
     """Motion of a wall whose courses slide on one another."""
     motion = np.zeros((len(scene.blocks), 3))
