@@ -14,8 +14,6 @@ from typing import Annotated, TypeAlias
 from cyclopts import Parameter, Token
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
-from rich.text import Text
 
 from runningbond.campaigns import INTERRUPTIONS, Interrupted
 from runningbond.models import Model
@@ -24,6 +22,8 @@ from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.sheet import Sheet
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.plausibility import warnings
+
+from .narrow import tables_of
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 """Exit codes of every command."""
@@ -91,15 +91,11 @@ def tell(text: str, *, error: bool = False) -> None:
 
 
 def print_table(sheet: Sheet) -> None:
-    """`tell` a table as wide as the terminal, or 180 characters wide if there is none."""
+    """`tell` a table as wide as the terminal, or 180 characters wide if there is none; in parts if it is wider."""
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
-    table = Table(title=Text(sheet.title), title_justify="left")
-    for head in sheet.heads:
-        table.add_column(Text(head))
-    for row in sheet.rows:
-        table.add_row(*map(Text, row))
     with console.capture() as captured:
-        console.print(table)
+        for table in tables_of(sheet, console.width):
+            console.print(table)
     tell(captured.get().removesuffix("\n"))
 
 
