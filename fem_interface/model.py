@@ -161,9 +161,10 @@ def fem(
         distance=distance,
         observe=observe,
     )
-    if len(outcome.force) and (finite or not listed_points(scene, len(outcome.force))):
-        elements = wall.elements
-        outcome = replace(outcome, force=at_ends(scene, elements.points.part(elements.listing), outcome.force))
+    if len(outcome.force):
+        own = wall.elements.points.part(wall.elements.listing)
+        if finite or not _are_listed(scene, own):
+            outcome = replace(outcome, force=at_ends(scene, own, outcome.force))
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
@@ -172,6 +173,14 @@ def _check_finite(rule: Rule | None, words: Mapping[str, str]) -> None:
     for setting, value in {"rule": rule, **words}.items():
         if value != WORDS.get(setting, (None,))[0]:
             raise SceneError(f"model fem: {setting}", "is not supported at finite displacements; leave it out", value)
+
+
+def _are_listed(scene: Scene, points: JointPoints) -> bool:
+    """Whether points are those to which readers of an outcome assign as many forces, place by place."""
+    listed = listed_points(scene, len(points))
+    if listed is None or not np.array_equal(listed.joint, points.joint):
+        return False
+    return bool(np.abs(listed.position - points.position).max(initial=0.0) <= scene.blocks.tolerance)
 
 
 def at_ends(scene: Scene, points: JointPoints, force: Array) -> Array:

@@ -20,6 +20,7 @@ from runningbond.joints import Rule, gauss, lobatto
 from runningbond.limit import limit
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
+from runningbond.wall import Wall
 from tests.walls import courses, panel
 
 from .walls import GLUE, MORTAR, joint_stiffness_of, wall, whole
@@ -216,3 +217,35 @@ def test_import_needs_no_compiler() -> None:
 
     code = "import sys, fem_interface; assert not {'numba', 'gmsh'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize(
+    ("rule", "cells", "soft"),
+    [(gauss(2), 1, {}), (lobatto(3), 3, {"fracture_energy_1": 5.0}), (None, 1, {"fracture_energy_1": 5.0})],
+)
+def test_forces_of_a_table_balance_moments_for_any_rule(rule: Rule | None, cells: int, soft: dict[str, float]) -> None:
+    """As many points as usual, but not in the usual places: their forces are carried to the ends of joints."""
+    pier = Wall.courses(
+        [[0.5], [0.5], [0.5]],
+        block_width=0.4,
+        block_height=0.2,
+        thickness=0.2,
+        density=2000.0,
+        young=5e9,
+        friction=0.7,
+        cohesion=3e4,
+        normal_stiffness=1e10,
+        shear_stiffness=4e9,
+        **soft,
+    )
+    joints, blocks = pier.run("fem", tolerance=0.1, rule=rule, cells=cells).joints, pier.scene.blocks
+    # All joints are level, and the lower block of each is b on the ground, a elsewhere.
+    up = np.where(np.asarray(joints["b"]) == len(blocks) - 1, -1.0, 1.0)
+    vertical, horizontal = (up * np.asarray(joints[f"{name}_force"]) for name in ("normal", "shear"))
+    moment = np.zeros(len(blocks))
+    for side, sign in (("a", 1.0), ("b", -1.0)):
+        block = np.asarray(joints[side])
+        x, y = (np.column_stack([joints["x"], joints["y"]]) - blocks.centroid[block]).T
+        np.add.at(moment, block, sign * (x * vertical + y * horizontal))
+    assert np.abs(vertical).max() > 10.0
+    assert moment[:-1] == pytest.approx(0.0, abs=1e-2)
