@@ -29,6 +29,12 @@ Walls that move steadily are left alone: combined damping dissipates more of a f
 NEARLY_CRUSHED = 0.36
 """Share of the compressive strength above which points bend a joint wrongly by more than half a percent."""
 
+BENDS_AT_POINTS = (
+    "carry bending at points, with an error of up to 3 % that the bracket does not include; "
+    "loads of arches, and of walls that hardly stand, may be off by more"
+)
+"""End of the note on joints that crush."""
+
 SHORTEST_FALL = 10_000
 """Steps before which no motion under a live load is a collapse, unless it passes the last mark of `CollapseDetector`.
 
@@ -186,5 +192,4 @@ def crushing_note(run: Run, state: State) -> str:
         joints = "joints near their compressive strength"
     else:
         return ""
-    note = "carry bending at points, with an error of up to 3 % that the bracket does not include"
-    return f"{joints} {note}; loads of arches, and of walls that hardly stand, may be off by more"
+    return f"{joints} {BENDS_AT_POINTS}"

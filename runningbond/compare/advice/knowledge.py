@@ -6,6 +6,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from runningbond.dynamics.collapse import BENDS_AT_POINTS
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.kinematics import sliding_dilates
@@ -223,9 +224,12 @@ class Knowledge:
         if self.draws == 1 and answer.fall is not None:
             told = "the lowest and the highest of its paths in load steps of several lengths"
         wide = "" if _within(answer, self.tolerance) else ", which lie further apart than the tolerance"
+        above = self.above
+        if self.followed is not None and BENDS_AT_POINTS in self.followed.message:
+            above += f"; joints that crush {BENDS_AT_POINTS}"
         if self.scene.is_led:
-            return f"largest reaction of the drive along its path in {told}{wide}{below}{self.above}"
-        return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{self.above}"
+            return f"largest reaction of the drive along its path in {told}{wide}{below}{above}"
+        return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
 
     def _certified(self, answer: Outcome) -> str:
         """Describe the certified part of the answer, before the bound or a history has widened its bracket."""
