@@ -18,6 +18,9 @@ from .traverse import Traverse
 LEAST_ROWS = 40
 """Smallest number of rows in any leg."""
 
+BELOW = 0.95
+"""Part of a number that two digits never round up above the number itself."""
+
 
 @dataclass(frozen=True, eq=False)
 class BeamDrive(Lead):
@@ -73,9 +76,8 @@ class BeamDrive(Lead):
         most = self.longest / (2 * ROWS * LEAST_WINDOWS * self.run.dt)
         if rate is None or rate <= most:
             return ""
-        return (
-            f"beam.drive.rate = {rate:g}: is too fast for its time steps; give at most {two_digits(most)} m/s, or none"
-        )
+        told = two_digits(BELOW * most)
+        return f"beam.drive.rate = {rate:g}: is too fast for its time steps; give at most {told} m/s, or none"
 
     def growth_left(self, traverse: Traverse) -> float:
         """Force [N] by which the answer may grow beyond the end of the path, at small displacements.

@@ -384,18 +384,22 @@ def test_given_drive_rate_is_kept() -> None:
 
 
 @pytest.mark.parametrize("displacements", ["small", "finite"])
-def test_rate_that_is_too_fast_for_time_steps_has_no_answer(displacements: Literal["small", "finite"]) -> None:
+@pytest.mark.parametrize("length", [0.0004, 0.0005])
+def test_rate_that_is_too_fast_for_time_steps_has_no_answer(
+    displacements: Literal["small", "finite"], length: float
+) -> None:
     """Rows have two steps at least: both traverses were equally slow, and agreed on the inertia of the wall."""
 
     def driven(rate: float) -> Outcome:
-        scene = under_beam("free", {"displacement": [0.0005, 0], "rate": rate})
+        scene = under_beam("free", {"displacement": [length, 0], "rate": rate})
         return dem_dynamic(scene, 0.01, displacements=displacements)
 
     for rate in (2.0, 50.0):
         outcome = driven(rate)
         assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", None, None)
     told = re.findall(r"is too fast for its time steps; give at most ([\d.]+) m/s", outcome.message)
-    assert "too fast" not in driven(0.9 * float(told[0])).message
+    assert "too fast" not in driven(float(told[0])).message
+    assert "too fast" in driven(1.2 * float(told[0])).message
 
 
 @pytest.mark.parametrize("model", MODELS)
