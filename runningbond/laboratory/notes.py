@@ -110,7 +110,9 @@ def _other_side(wall: MeasuredWall) -> list[str]:
     if wall.scene_file is None or not wall.is_cyclic:
         return []
     path = driven_path(wall)
-    if not (goes_to_both_sides(path) and goes_to_both_sides(wall.path)) or path[0] * wall.side > 0:
+    if not (goes_to_both_sides(path) and goes_to_both_sides(wall.path)):
+        return []
+    if next(filter(None, path)) * wall.side > 0:  # a path may begin at zero
         return []
     what = f"the record and {wall.scene_file.name} push the wall first to opposite sides"
     told = "sides are compared by their sign, so that displacements and loops of different half cycles may be compared"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise, product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -878,15 +879,23 @@ def test_record_of_one_side_of_a_cyclic_test_is_noted(kind: str, other: str, not
     assert notes_on(wall) == ([said] if noted else [])
 
 
-@pytest.mark.parametrize(("side", "noted"), [(1, False), (-1, True)])
+@pytest.mark.parametrize(
+    ("drive", "noted"),
+    [
+        ({"amplitudes": [0.002, 0.005]}, False),
+        ({"amplitudes": [-0.002, -0.005]}, True),
+        ({"displacement": [[0, 0.002, -0.002, 0.005, -0.005, 0]]}, False),
+        ({"displacement": [[0, -0.002, 0.002, -0.005, 0.005, 0]]}, True),
+    ],
+)
 def test_record_of_cycles_and_scene_that_begin_on_opposite_sides_are_noted(
-    side: int, noted: bool, tmp_path: Path
+    drive: dict[str, Any], noted: bool, tmp_path: Path
 ) -> None:
     """A wall's own prediction, as a record with reversed signs, once dissipated a third more than itself, unnoticed."""
     curve = "displacement_mm,force_kN\n0,0\n2,40\n-2,-40\n5,50\n-5,-50\n0,0\n"
     folder = write_folder(tmp_path / "own", "WS.175,Cyclic", heads="Test unit name,Cyclic / Monotonic", curve=curve)
     tables = _tables(one(tmp_path / "row"), ALL)
-    tables["beam"]["drive"] = {"amplitudes": [0.002 * side, 0.005 * side]}
+    tables["beam"]["drive"] = drive
     write_toml(tables, folder / "WS.175.toml")
     (wall,) = read_folder(folder)
     said = (
