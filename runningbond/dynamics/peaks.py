@@ -58,7 +58,7 @@ class Peaks:
 
     def __init__(self, start: State, steps: float, most: float = np.inf) -> None:
         # Rounded first: the last bit of a time step may make 199.999 steps of 200, and still there are four windows.
-        levels = max(1, int(np.log2(max(1.0, min(most, round(steps) / WINDOW_STEPS)))))
+        levels = int(np.log2(max(LEAST_WINDOWS, min(most, round(steps) / WINDOW_STEPS))))
         self.windows = 2**levels  # number of the shortest windows in a row
         self._peaks = [Peak(start) for _ in range(levels + 1)]
         # Sums of force and inertia times steps, and of steps, up to the end of each window of the row.
