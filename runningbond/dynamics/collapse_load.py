@@ -263,6 +263,8 @@ def _judge(
         locks = _may_lock(run, result, criteria, is_self_locking)
     except KeyboardInterrupt:
         return replace(outcome, message="interrupted: the bracket so far")
+    except Unstable as error:
+        return replace(outcome, status="failed", message=str(error))
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if excluded:

@@ -187,6 +187,12 @@ class Knowledge:
         leans, least = next(filter(None, found), None), self.answer.lower or 0.0
         return leans if leans is not None and leans.load < (1 - self.tolerance) * least else None
 
+    def soft_on_edges(self, leans: Leaning) -> bool:
+        """Whether blocks must deform in a wall that rolls: its loss grows with the cube root of the compliance."""
+        least = 0.0 if self.answer is None else self.answer.lower or 0.0
+        stiffer = np.cbrt(1 - self.compliance)
+        return bool((least - leans.load) * (1 - stiffer) > self.tolerance * least * stiffer)
+
     def estimate(self, model: Model, draws: int = 1) -> Estimate:
         """Expected cost of a model for some draws, at the pace of the models run so far."""
         at = pace(self.scene, self.tolerance, self.outcomes, self.drawn)

@@ -133,15 +133,14 @@ def _compliance(known: Knowledge) -> str:
 
 def _enough(known: Knowledge, why: str) -> Step:
     """Stop with the answer so far, unless displacements before collapse are too large for the initial geometry."""
-    far = (model for model in known.histories if "displacements" in model.parameters)
+    far = [model for model in known.histories if "displacements" in model.parameters]
     finite = next(model for model in far if deforms(model) == known.soft)
     if known.finite:
         return Step(finite, f"{why}; finite displacements are requested", finite=True)
     leans = known.on_edges
     if leans is not None:
-        return Step(
-            finite, f"{why}; but pressed along their length, joints roll onto their edges: {leans}", finite=True
-        )
+        model = next(model for model in far if deforms(model) == known.soft_on_edges(leans))
+        return Step(model, f"{why}; but pressed along their length, joints roll onto their edges: {leans}", finite=True)
     moved = known.displacement
     if moved is None:
         return Step(None, f"{why}; displacements are taken to be small")
