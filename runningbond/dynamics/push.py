@@ -295,13 +295,13 @@ class Push(Lead):
 
     def _vibrating(self, traverse: Traverse, tolerance: float) -> str:
         """Note on blocks that vibrate without end, as friction can make them: damping takes a part of the load."""
-        least, bears = tolerance * traverse.answer, "and the wall may bear less by as much"
+        least, answer = tolerance * traverse.answer, traverse.answer
         if traverse.drag > least:
-            share = two_digits(100 * traverse.drag / traverse.answer)
-            return f"blocks vibrate: damping takes {share} % of the load at its largest, {bears}"
+            taken = f"takes {two_digits(100 * traverse.drag / answer)} % of the load at its largest"
+            return f"blocks vibrate: damping {taken}, and the wall may bear less by as much"
         if traverse.late_drag > least:
-            share = two_digits(100 * traverse.late_drag / traverse.answer)
-            return f"blocks vibrate as the multiplier falls: damping takes up to {share} % of its largest, {bears}"
+            taken = f"takes up to {two_digits(100 * traverse.late_drag / answer)} % of its largest"
+            return f"blocks vibrate as the multiplier falls: damping {taken}, by which the curve there may be too high"
         return ""
 
     def _damped(self, state: State) -> float:
