@@ -130,6 +130,8 @@ def _followed(
         run = run.held_late(state)
         run.is_driven = True
         lead = _lead(wall, run, state, observe, distance)
+        if faster := lead.too_fast():
+            return replace(outcome, message=f"no answer: {faster}"), None
         for duration in _durations(lead, loaded.rest):
             traverses.append(traverse := Traverse(state, np.zeros_like(state.motion), lead.moves))
             last = lead.go(traverse, lead.longest / duration)
@@ -284,8 +286,6 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
     at = f"{lead.reached(outcome.curve):.4g} m"
     if traverse.verdict == "undecided" or len(traverses) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
-    if faster := lead.too_fast():
-        return replace(outcome, message=f"no answer: {faster}; {what}")
     if places := [each.fall for each in traverses[-2:] if each.fall is not None]:
         if not _fall_alike(traverses[-2], traverse, tolerance):
             return replace(outcome, message=f"no answer: another speed changes whether or where it falls; {what}")

@@ -403,6 +403,18 @@ def test_scene_of_a_cyclic_test_may_push_to_one_side(side: int, first: int, tmp_
     assert (row["dV"], row["cycle_ratio"], row["stiffness_ratio"]) == (pytest.approx(0.1), None, None)
 
 
+def test_drive_too_fast_for_time_steps_is_not_scored(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It moved along the whole path, so that its force and stiffness were scored although the model gave no answer."""
+    folder, tables = write_folder(tmp_path / "walls", "pier,Monotonic,,,,,,,,,,9,,R"), leaning(1)
+    tables["beam"]["drive"]["rate"] = 1e3
+    write_toml(tables, folder / "pier.toml")
+    arguments = ["--data", str(folder), "--out", str(tmp_path / "out"), "--models", "rigid", "--jobs", "1", "--json"]
+    assert command(["validate", *arguments]) == 3
+    (row,) = printed(capsys)["walls"]
+    assert (row["status"], row["V_max"], row["dV"], row["stiffness"], row["mode"]) == ("undecided", *4 * [None])
+    assert "is too fast for its time steps" in row["message"]
+
+
 @pytest.mark.parametrize(("model", "crushes"), [("limit", False), ("limit-crushing", True)])
 def test_page_lists_the_shape_of_the_cap_of_joints_that_crush(model: str, crushes: bool, tmp_path: Path) -> None:
     """C_ss is a default for dry joints, and was once listed nowhere."""
