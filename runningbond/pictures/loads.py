@@ -220,10 +220,22 @@ class LoadDrawing:
         if not row.is_shear:
             self.sketch.line(name, tails, color=colour, lw=1.2, zorder=6)
         ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
-        outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ row.away))
-        spots = [Spot(outer, _side(row.away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
-        if text:
-            self.sketch.label(text, spots, colour)
+        if not text:
+            return
+        outer = max(tails, tips, key=lambda line: float(line.mean(axis=0) @ row.away))
+        spots = [Spot(self._outside(outer, row.away, text), _side(row.away))]
+        self.sketch.label(text, [*spots, Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))], colour)
+
+    def _outside(self, line: Array, away: Array, text: str) -> Array:
+        """Point at the middle of a line ``(n, 2)`` [m], outside the part of it that lies beside a text.
+
+        The mean of a line that a mechanism breaks lies on neither part.
+        """
+        across = np.abs(away[::-1])
+        middle, size = line.mean(axis=0), np.array(text_size(text, TYPE)) * self.sketch.point
+        aside = np.abs((line - middle) @ (away[::-1] * (-1, 1)))
+        beside = aside <= max(aside.min(), float(size @ across) / 2)
+        return np.asarray(middle + ((line - middle) @ away)[beside].max() * away)
 
     def _beam(self, load: BeamLoad, live: bool) -> None:
         """Draw a force on the beam, up to its edge; a prescribed displacement has the colour of motions."""

@@ -155,7 +155,7 @@ class Sketch:
                 drawn = Line2D(*mark.points.T, **mark.style)
             drawn.set_label(mark.name)
             axes.add_artist(drawn)
-        for one in (*self.placed, *self.numbers):
+        for one, edge in (*((one, 0.42) for one in self.placed), *((one, 0.14) for one in self.numbers)):
             axes.text(
                 float(one.middle[0]),
                 float(one.middle[1]),
@@ -165,6 +165,6 @@ class Sketch:
                 rotation=90 if one.upright else 0,
                 fontsize=share * one.label.size,
                 color=one.label.colour,
-                path_effects=[withStroke(linewidth=0.42 * share * one.label.size, foreground="white")],
+                path_effects=[withStroke(linewidth=edge * share * one.label.size, foreground="white")],
                 zorder=8,
             )

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from io import BytesIO
 from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
@@ -13,11 +14,12 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import same_color
+from matplotlib.colors import same_color, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 from matplotlib.text import Text
+from PIL import Image
 
 from runningbond.joints import wall_points
 from runningbond.limit import limit
@@ -328,6 +330,26 @@ def test_oblique_live_loads_beside_dead_loads_stay_at_their_height() -> None:
     assert tips[:, 0] == pytest.approx(np.full(len(tips), tips[0, 0]), abs=1e-9)
     assert tips[:, 0].max() < weights[..., 0].min()
     assert np.unique(np.round(weights[..., 0], 9)).size == 1
+
+
+def test_label_of_a_line_load_that_breaks_is_clear_of_its_line() -> None:
+    """It stands beside the unmoved part; the mean of both parts is in between."""
+    tables = wall(2.0, 2.0)
+    tables["load"]["live"] = {"kind": "line", "from": [0.0, 0.0], "to": [0.0, 2.0], "force": [1000.0, 0.0]}
+    scene = scene_from_dict(tables)
+    motion = np.zeros((len(scene.wall), 3))
+    motion[scene.blocks.centroid[:, 1] > 1.25, 0] = 1.0
+    figure = figure_of(scene, Outcome("", "limit", "collapse", 1.0, motion=motion))
+    (axes,) = figure.axes
+    (text,) = [text for text in axes.texts if text.get_text() == "λ · 1 kN/m"]
+    figure.canvas.draw()
+    box = text.get_window_extent()
+    (line,) = named(figure, "live load", Line2D)
+    ends = axes.transData.transform(line.get_xydata())
+    beside = (ends[:, 1] > box.y0 - 20) & (ends[:, 1] < box.y1 + 20)
+    assert beside.any()
+    edge = 0.21 * text.get_fontproperties().get_size_in_points() * figure.dpi / 72  # white, it would cut the line
+    assert box.x1 + edge < ends[beside, 0].min()
 
 
 def test_two_loads_along_one_line_are_drawn_apart() -> None:
@@ -724,6 +746,19 @@ def test_block_numbers_fit_into_blocks_cut_by_openings() -> None:
         outline = shapely.Polygon(scene.blocks.polygon(int(own)))
         assert outline.contains(shapely.box(*placed.box.ravel())), number
         assert placed.label.size > 3.0, number
+
+
+def test_block_numbers_do_not_hide_loads() -> None:
+    """A load on a floor is drawn over the course below, in whose blocks the white edges of numbers hid its heads."""
+    tables = wall(6.0, 3.0, (0.6, 0.3))
+    tables["load"]["dead"] = [line(1.5, 0.0, 6.0, [0.0, -8e3])]
+    scene = scene_from_dict(tables)
+
+    def blue(numbers: bool) -> int:
+        pixels = np.array(Image.open(BytesIO(to_png(figure_of(scene, numbers=numbers)))).convert("RGB")).astype(int)
+        return int((np.abs(pixels - np.rint(255 * np.array(to_rgb(DEAD)))) < 8).all(axis=2).sum())
+
+    assert blue(True) > 0.75 * blue(False)
 
 
 @pytest.mark.long
