@@ -110,7 +110,9 @@ def _bend(axes: "Axes", moved: Array, load: Array) -> None:
     """Make the displacement axis logarithmic beyond a linear part if the rise of the load would be invisible."""
     from matplotlib.ticker import SymmetricalLogLocator
 
-    half = float(np.abs(moved[np.argmax(load >= load.max() / 2)]))  # where the load first reaches half its peak
+    k = int(np.argmax(load >= load.max() / 2))
+    ends = slice(max(k - 1, 0), k + 1)  # load steps may be long: half the peak lies between two states
+    half = float(np.abs(np.interp(load.max() / 2, load[ends], moved[ends])))
     if not 0 < half < LINEAR_SHARE * np.ptp(moved) or moved.min() <= -half:  # no log axis for cyclic loading
         return
     linear = float(10.0 ** np.ceil(np.log10(half)))

@@ -30,6 +30,13 @@ def test_displacement_axis_is_logarithmic_if_elastic_range_is_tiny() -> None:
     assert curve(np.array([0.0, 1e-3, 2e-3, 1e-2]), load).axes[0].get_xscale() == "linear"
 
 
+def test_linear_part_does_not_grow_with_the_load_steps() -> None:
+    """Half the peak lies at 0.021 mm, between two states; the second one would make the axis linear up to 1 mm."""
+    figure = curve(1e-3 * np.array([0.0, 0.01, 0.11, 0.2, 6.0]), np.array([0.0, 0.44, 0.95, 0.98, 1.0]))
+    (linear,) = {float(text.xy[0]) for text in figure.axes[0].texts if text.get_text() == "linear"}
+    assert linear == pytest.approx(0.1)
+
+
 def test_cyclic_curve_has_linear_axes_with_whole_curve() -> None:
     figure = curve(1e-3 * np.array([0.0, 0.01, 1.0, -1.0, 1.0]), np.array([0.0, 0.9, 1.0, -1.0, 1.0]))
     axes = figure.axes[0]
