@@ -111,7 +111,11 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     if wall.is_cyclic and len(wall.curve):
         _envelope(axes, wall.curve, ends, MEASURED, "measured, peaks of its cycles")
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
-    axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")
+    axes.set_ylabel("horizontal force [kN]")
+    if len(wall.curve) or any(len(each.curve) and each.strength is not None for each in predictions):
+        axes.set_xlabel("displacement at the actuator [mm]")
+    else:
+        axes.set_xticks([])  # loads alone are the same at all displacements
     axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)
     axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
     bare(axes)

@@ -59,6 +59,18 @@ def test_card_of_cycles_without_a_record_has_the_envelope_of_their_prediction(fi
     assert np.asarray(line.get_xydata()) == pytest.approx(np.array([(-2, -20), (-1, -10), (1, 10), (2, 20)]), rel=0.03)
 
 
+def test_card_of_loads_alone_has_no_axis_of_displacements(tmp_path: Path) -> None:
+    """There is neither a record nor a curve; the axis from 0 to 1 mm belonged to nothing."""
+    walls = [replace(wall, curve=np.zeros((0, 2))) for wall in read_folder(write_folder(tmp_path / "walls", GRANITE))]
+    rung = LADDER["limit"]
+    (loads, *_), _ = predict(walls, [rung], scenes_of(walls, [rung]), tmp_path, jobs=1)
+    axes = card([loads]).axes[0]
+    assert not len(axes.get_xticks())
+    assert not axes.get_xlabel()
+    followed = replace(loads, wall=replace(walls[0], curve=np.array([(0.0, 0.0), (0.01, 61e3)])))
+    assert card([followed]).axes[0].get_xlabel().endswith("[mm]")
+
+
 def test_mechanism_against_its_loads_is_not_drawn(tmp_path: Path) -> None:
     """The panel of the nearest model was once the undeformed wall, called the motion of failure."""
     walls = read_folder(write_folder(tmp_path / "walls", GRANITE))
