@@ -17,11 +17,11 @@ from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mec
 from .deformed_shape import DeformedShape, Extent, joint_lines, outline, undeformed_shape, usual_side
 from .joint_state import JointState
 from .labels import block_numbers
-from .legend import CORNER, block_colours, joint_colour, used_joint_materials, wall_caption
+from .legend import CORNER, block_colours, used_joint_materials, wall_caption
 from .mechanism import mechanism_shape
 from .quantities import readable
 from .resultants import resultants
-from .style import CRUSHED, DARK, EDGE, OUTLINE, STATE_COLOURS, tint
+from .style import CRUSHED, DARK, EDGE, OUTLINE, STATE_COLOURS, Colour, joint_colour, tint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -227,7 +227,7 @@ def _draw_joints(axes: "Axes", faces: Array, state: JointState, colour: str, wid
     _draw_lines(axes, lines, colour, wide, DASHES[state])
 
 
-def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: Any) -> None:
+def _draw_lines(axes: "Axes", lines: Array, colour: str | Colour, width: float, dashes: Any) -> None:
     """Draw lines ``(n, 2, 2)`` [m]."""
     from matplotlib.collections import LineCollection
 

@@ -9,7 +9,7 @@ from runningbond.scene import Array, JointMaterial, Scene
 
 from .captions import Caption, held_key, is_force, wall_title
 from .quantities import beginning, counted, minus, readable
-from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
+from .style import BEAM, DARK, DEAD, HELD, MOTION, block_colour, joint_colour
 from .ties import TIE, tie_kinds
 
 LINE_LENGTH = 58
@@ -50,16 +50,11 @@ def thickness_text(scene: Scene) -> str:
 
 def block_colours(scene: Scene) -> Array:
     """Colour of each block of the wall, ``(nw, 3)``: by material, except for held blocks and the beam."""
-    colours = np.array([BLOCK_COLOURS[k % len(BLOCK_COLOURS)] for k in scene.material_of_block])
+    colours = np.array([block_colour(int(k)) for k in scene.material_of_block])
     colours[scene.fixed] = HELD
     if scene.beam is not None:
         colours[scene.beam.block] = BEAM
     return np.asarray(colours[scene.wall])
-
-
-def joint_colour(number: int) -> str:
-    """Colour of a joint material."""
-    return JOINT_COLOURS[number % len(JOINT_COLOURS)]
 
 
 def used_block_materials(scene: Scene) -> list[int]:
@@ -102,7 +97,7 @@ def _materials(scene: Scene) -> list[Any]:
     handles: list[Any] = []
     if len(used) > 1:
         for k in used:
-            block, colour = scene.block_materials[k], BLOCK_COLOURS[k % len(BLOCK_COLOURS)]
+            block, colour = scene.block_materials[k], block_colour(k)
             name = "blocks" if k == 0 else block.name
             thick = f", {block.thickness:.4g} m thick" if block.thickness else ""
             label = f"{name}: {block.density:g} kg/m³{thick}"

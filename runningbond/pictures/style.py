@@ -59,6 +59,9 @@ BLOCK_COLOURS: tuple[Colour, ...] = (
 JOINT_COLOURS = ("0.35", "#bb932e", "#6f2008", "#67c7e5", "#358648", "#3f0340")
 """Colours of joints by material."""
 
+DARKER, LIGHTER = 0.6, 0.6
+"""Brightness of the colours of further blocks, and strength of those of further joints, if colours do not suffice."""
+
 CHART_COLOURS = ("#2f3568", "#64baab", "#bf8111", "#943223", "#9b4db5")
 """Colours of the series of charts."""
 
@@ -80,4 +83,25 @@ def tint(state: JointState) -> Colour:
     """A light shade of a state's colour."""
     colour = STATE_COLOURS[state]
     red, green, blue = (1 - TINTS[state] * (1 - int(colour[i : i + 2], 16) / 255) for i in (1, 3, 5))
+    return red, green, blue
+
+
+def block_colour(number: int) -> Colour:
+    """Colour of blocks of a material; after the twelfth named one, colours are used again."""
+    if not number:
+        return BLOCK_COLOURS[0]
+    named = BLOCK_COLOURS[1:]
+    turn, k = divmod(number - 1, len(named))
+    shade = DARKER if turn % 2 else 1.0
+    red, green, blue = named[k]
+    return shade * red, shade * green, shade * blue
+
+
+def joint_colour(number: int) -> Colour:
+    """Colour of a joint material; after the twelfth one, colours are used again."""
+    from matplotlib.colors import to_rgb
+
+    turn, k = divmod(number, len(JOINT_COLOURS))
+    share = LIGHTER if turn % 2 else 1.0
+    red, green, blue = (part + (1 - share) * (1 - part) for part in to_rgb(JOINT_COLOURS[k]))
     return red, green, blue

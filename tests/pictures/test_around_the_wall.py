@@ -489,6 +489,18 @@ def test_blocks_have_colour_of_their_material(drawn: Any) -> None:
     assert (np.abs(faces(figure_of(held)) - HELD) < 1e-9).all(axis=1).tolist() == held.fixed.tolist()
 
 
+def test_many_materials_have_different_colours_in_wall_and_key() -> None:
+    tables = wall(2.0, 2.0)
+    tables["materials"] = {f"m{k}": {"density": 1500.0 + k} for k in range(8)}
+    tables["assign"] = [{"block": f"m{k}", "box": [[0, 0.25 * k], [2, 0.25 * k + 0.25]]} for k in range(8)]
+    figure = figure_of(scene_from_dict(tables))
+    assert len(np.unique(faces(figure), axis=0)) == 8
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    key = {one.get_facecolor() for one in legend.get_patches() if "kg/m³" in str(one.get_label())}
+    assert len(key) == 8
+
+
 def test_joints_have_colour_of_their_material(drawn: Any) -> None:
     """The key distinguishes the materials of bed and head joints, and omits unused materials."""
     scene, figure = drawn("kept_beam")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 
 from runningbond.pictures.charts import LOOKS, bracket, looks_of
 from runningbond.pictures.curve import curve_figure
@@ -33,7 +34,7 @@ def test_displacement_axis_is_logarithmic_if_elastic_range_is_tiny() -> None:
 def test_linear_part_does_not_grow_with_the_load_steps() -> None:
     """Half the peak lies at 0.021 mm, between two states; the second one would make the axis linear up to 1 mm."""
     figure = curve(1e-3 * np.array([0.0, 0.01, 0.11, 0.2, 6.0]), np.array([0.0, 0.44, 0.95, 0.98, 1.0]))
-    (linear,) = {float(text.xy[0]) for text in figure.axes[0].texts if text.get_text() == "linear"}
+    (linear,) = (float(one.xy[0]) for one in figure.axes[0].findobj(Annotation) if one.get_text() == "linear")
     assert linear == pytest.approx(0.1)
 
 

@@ -21,6 +21,8 @@ from runningbond.pictures.style import (
     JOINT_COLOURS,
     MOTION,
     STATE_COLOURS,
+    block_colour,
+    joint_colour,
     tint,
 )
 from runningbond.scene import Array
@@ -53,6 +55,8 @@ PALETTES: dict[str, tuple[Sequence[object], float, float]] = {
     "gaps of joints": (TINTS, 8.0, 10.0),
     "joints by material": (JOINT_COLOURS, 10.0, 20.0),
     "blocks by material": ([*BLOCK_COLOURS, HELD, BEAM], 3.5, 8.0),
+    "blocks of many materials": ([*map(block_colour, range(13)), HELD, BEAM], 1.5, 7.0),
+    "joints of many materials": ([*map(joint_colour, range(12))], 1.0, 10.0),
     "loads": ([DARK, DEAD, MOTION], 3.0, 35.0),
     "energies": (list(ENERGY_COLOURS.values()), 10.0, 15.0),
     "what answers are worth": ([colour for colour, _ in WORTH.values()], 9.0, 9.0),
