@@ -67,12 +67,16 @@ class BeamDrive(Lead):
         """Note on the largest reaction in the other direction of a cyclic drive."""
         return other_way(self.goals, curve)
 
+    @property
+    def _rate(self) -> float | None:
+        return None if self.scene.drive is None else self.scene.drive.rate
+
     def too_fast(self) -> str:
         """Note on a rate whose double, at which the path is also followed, has not two time steps for each row.
 
         Rows have two steps at least: the drive is then slower than that, as slow at both speeds, and they would agree.
         """
-        rate = None if self.scene.drive is None else self.scene.drive.rate
+        rate = self._rate
         most = self.longest / (2 * ROWS * LEAST_WINDOWS * self.run.dt)
         if rate is None or rate <= most:
             return ""
@@ -89,11 +93,20 @@ class BeamDrive(Lead):
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on a force that depends on how joints slid, or that grows on a longer path, at finite displacements."""
         slid = self.friction_note(traverse, tolerance, BEAM_DIFFERS, until=traverse.largest + 1)
+        told = joined(self._moving(traverse, tolerance), slid)
         grown = traverse.answer + self._growth_along_slope(traverse)
         if self.is_small or grown <= (1 + tolerance) * traverse.answer:
-            return slid
+            return told
         rising = f"still rising at the end, along its slope to {number(grown)} on a path twice as long"
-        return joined(slid, rising)
+        return joined(told, rising)
+
+    def _moving(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on a rate that is so fast that inertia and damping take a part of the force."""
+        taken = traverse.answer - traverse.still
+        if taken <= tolerance * traverse.answer:
+            return ""
+        part = two_digits(100 * taken / traverse.answer)
+        return f"inertia and damping take {part} % of the force at this rate: the wall at rest may bear less by as much"
 
     def _growth_along_slope(self, traverse: Traverse) -> float:
         return 0.0 if traverse.verdict == "collapse" else growth_left(self._unbraked(traverse.curve))
@@ -126,17 +139,22 @@ class BeamDrive(Lead):
             for k, parts in enumerate(paces.tolist()):
                 for window, (part, length) in enumerate(zip(parts, lengths.tolist(), strict=True), start=1):
                     before, gathered, since = run.driven_speed(state), self._gathered(state), state.time
+                    spent, moved = self._spent(state), run.driven(state)
                     until += length * step
                     taken = run.steps_until(until, state)  # time steps change with the contacts
                     if not self.is_small and k >= n - RAMP:  # braking takes up what whole steps have left
                         top = (goal - self.moved(state)) / (step * ahead)
                     ahead -= part * length
                     force = run.drive(state, top * part, taken, given=given)
-                    force -= (top * part - before) / (mobility * (state.time - since))  # the driven body's own inertia
+                    own = (top * part - before) / (mobility * (state.time - since))  # the driven body's own inertia
+                    force -= own
                     # At finite displacements blocks collide all the time, which means over rows average out.
                     knock = not self.is_small and k >= RAMP
                     inertia = 0.0 if knock else (self._gathered(state) - gathered) / (state.time - since)
-                    peaks.see(force, inertia, taken, state, len(traverse.rows) + (window > peaks.windows // 2))
+                    spent = self._spent(state) - spent
+                    share = spent / (run.driven(state) - moved) - own if self._rate else 0.0
+                    row = len(traverse.rows) + (window > peaks.windows // 2)
+                    peaks.see(force, inertia, taken, state, row, spent=share)
                     if window == peaks.windows // 2:
                         middle = state.copy()
                 # The mean force of a row belongs to the middle of the row.
@@ -153,6 +171,15 @@ class BeamDrive(Lead):
             seen.append((state.motion.copy(), self.crushed(state)))
         self.conclude(traverse, peaks, seen)
         return state
+
+    def _spent(self, state: State) -> float:
+        """Kinetic energy of all bodies, and what damping has taken of it so far [J]; 0 if no rate is asked for.
+
+        Without a rate the speed is halved until the force converges.
+        """
+        if self._rate is None:
+            return 0.0
+        return self.run.system.kinetic_energy(state.velocity) + self.run.damped(state)
 
     def _gathered(self, state: State) -> float:
         """Momentum along the drive of all bodies except the beam, including what damping dissipates meanwhile [N s]."""

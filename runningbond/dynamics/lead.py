@@ -238,6 +238,7 @@ class Lead(ABC):
         traverse.calm()
         peak, between, traverse.unseen, traverse.resolved = peaks.resolved()
         traverse.best, traverse.inertia, traverse.lasting = peak.state, peak.inertia, peaks.longest.force
+        traverse.spent = peak.spent
         if between:
             self.note(traverse, peak.state, self.moved(peak.state), peak.force)
             traverse.rows.insert(peak.row, traverse.rows.pop())

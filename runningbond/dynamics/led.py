@@ -215,6 +215,15 @@ def _bracket(traverses: list[Traverse]) -> tuple[float, float]:
     return lower, slow.answer + change + slow.unseen
 
 
+def _still(traverses: list[Traverse]) -> float:
+    """Least answer of a wall at rest: the last one without what motion takes, minus its change from twice the speed.
+
+    A beam reaches the rate that is asked for, and twice that, on the same way: both answers may contain much inertia.
+    """
+    fast, slow = traverses[-2:]
+    return slow.still - abs(fast.still - slow.still)
+
+
 def _spread(lead: Lead, traverses: list[Traverse]) -> float:
     """Width of the bracket, relative to its larger end."""
     if len(traverses) < 2:
@@ -296,7 +305,7 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         message = joined(COME_FREE, what, lead.doubt(traverse, tolerance))
         return replace(outcome, status="unbounded", message=message)
     spread, left = _spread(lead, traverses), lead.growth_left(traverse)
-    lower = least - traverse.drag
+    lower = min(least, _still(traverses)) - traverse.drag
     outcome = replace(outcome, lower=lower, upper=most + left)
     room = (tolerance - spread if spread <= tolerance else tolerance) * max(traverse.answer, lead.least)
     has_formed = left <= room and lead.has_formed(traverse, tolerance, still=traverse.answer - least)
@@ -314,7 +323,8 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         if traverse.fall is not None:
             why = f"{lead.fall(traverse)}, up to which it changes by more than the tolerance"
         return replace(outcome, message=f"no answer: {why}; {what}")
-    told = f"; {lead.fall(traverse)}" if fell else ""
+    told = "" if spread <= tolerance else "; another speed changes it by more than the tolerance"
+    told += f"; {lead.fall(traverse)}" if fell else ""
     told += "" if lead.moves or not fell else ", and the answer is that of its last rest"
     message = joined(what + told, lead.doubt(traverse, tolerance))
     return replace(outcome, status="collapse", multiplier=traverse.answer, message=message)

@@ -28,18 +28,19 @@ class Peak:
     state: State  # at the end of the middle window
     force: float = 0.0
     inertia: float = 0.0  # the largest of the three
+    spent: float = 0.0  # the largest of the three
     row: int = 1  # row of the path before which the peak occurred
-    _last: list[tuple[float, float]] = field(default_factory=list)
+    _last: list[tuple[float, float, float]] = field(default_factory=list)
     _before: State | None = None
 
-    def see(self, force: float, inertia: float, state: State, row: int) -> None:
-        """Update with the mean force and inertia in the next window, and with the state at its end."""
-        self._last = [*self._last[-2:], (force, abs(inertia))]
+    def see(self, force: float, inertia: float, spent: float, state: State, row: int) -> None:
+        """Update with means over the next window, as in `Peaks.see`, and with the state at its end."""
+        self._last = [*self._last[-2:], (force, abs(inertia), spent)]
         middle = sorted(self._last)[1][0] if len(self._last) == 3 else 0.0
         if middle > self.force:
             self.state = self._before or state.copy()
             self.force, self.row = middle, row
-            self.inertia = max(inertia for _, inertia in self._last)
+            _, self.inertia, self.spent = np.max(self._last, axis=0).tolist()
         self._before = state.copy() if force > self.force else None
 
 
@@ -61,14 +62,17 @@ class Peaks:
         levels = int(np.log2(max(LEAST_WINDOWS, min(most, round(steps) / WINDOW_STEPS))))
         self.windows = 2**levels  # number of the shortest windows in a row
         self._peaks = [Peak(start) for _ in range(levels + 1)]
-        # Sums of force and inertia times steps, and of steps, up to the end of each window of the row.
-        self._sums, self._ends = [np.zeros(2)], [0]
+        # Sums of force, inertia and `spent` times steps, and of steps, up to the end of each window of the row.
+        self._sums, self._ends = [np.zeros(3)], [0]
 
-    def see(self, force: float, inertia: float, steps: int, state: State, row: int) -> None:
-        """Update with means over the next window, of so many steps, the state at its end, and the row it precedes."""
+    def see(self, force: float, inertia: float, steps: int, state: State, row: int, *, spent: float = 0.0) -> None:
+        """Update with means over the next window, of so many steps, the state at its end, and the row it precedes.
+
+        `spent` is the part of the force whose work becomes kinetic energy or is damped.
+        """
         if len(self._sums) > self.windows:
-            self._sums, self._ends = [np.zeros(2)], [0]
-        self._sums.append(self._sums[-1] + steps * np.array([force, inertia]))
+            self._sums, self._ends = [np.zeros(3)], [0]
+        self._sums.append(self._sums[-1] + steps * np.array([force, inertia, spent]))
         self._ends.append(self._ends[-1] + steps)
         for level, peak in enumerate(self._peaks):
             some = self.windows >> level
@@ -80,11 +84,11 @@ class Peaks:
         """Mean force over the last `windows` windows of the row."""
         return self._means(windows)[0]
 
-    def _means(self, windows: int) -> tuple[float, float]:
-        """Mean force and inertia over the last `windows` windows of the row."""
+    def _means(self, windows: int) -> tuple[float, float, float]:
+        """Mean force, inertia and `spent` over the last `windows` windows of the row."""
         steps = self._ends[-1] - self._ends[-1 - windows]
-        force, inertia = ((self._sums[-1] - self._sums[-1 - windows]) / steps).tolist()
-        return force, inertia
+        force, inertia, spent = ((self._sums[-1] - self._sums[-1 - windows]) / steps).tolist()
+        return force, inertia, spent
 
     @property
     def longest(self) -> Peak:

@@ -362,6 +362,11 @@ class Run:
         """Energy [J] of a state that loads did not supply: preloads of ties, or an initial motion set by hand."""
         return max(0.0, -self.ledger(state).residual) - self.system.ties.stored(np.zeros(len(self.system.ties)))
 
+    def damped(self, state: State) -> float:
+        """Work that damping has taken so far, of bodies and in joints [J]."""
+        of_bodies = state.damped[np.isfinite(self.system.mass)].sum()
+        return float(of_bodies + self.interface_of(state).area @ state.history[DAMPED_WORK]) + state.absorbed
+
     def unbalanced(self, state: State) -> float:
         """Largest unbalanced force of the last step, each in its unit (`force_unit`), as a rule its block's weight."""
         return self.system.measure(state.unbalanced)

@@ -44,6 +44,7 @@ class Traverse:
     verdict: Verdict = "stable"
     unseen: float = 0.0  # by how much the answer may be larger: means over windows flatten peaks
     inertia: float = 0.0  # by how much smaller, as bodies accelerate; in settlements both are due to loosened friction
+    spent: float = 0.0  # part of the answer whose work becomes kinetic energy or is damped, if a rate was asked for
     drag: float = 0.0  # part of the answer of a push that damping takes
     late_drag: float = 0.0  # largest part of the force that damping takes as a pushed wall loses half of its answer
     crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # permanent closure at the joints' ends there [m]
@@ -63,6 +64,11 @@ class Traverse:
     def answer(self) -> float:
         """The force at the end of a path from rest to rest, or the largest force during a motion."""
         return float(self.curve[:, 1].max() if self.moves else self.curve[-1, 1])
+
+    @property
+    def still(self) -> float:
+        """The answer without the part whose work sets bodies in motion or is damped; it may be too small."""
+        return self.answer - max(0.0, self.spent)
 
     @property
     def largest(self) -> int:
