@@ -1,8 +1,5 @@
 """Walls whose joints bear at their ends but would, along their whole length, roll onto their edges first."""
 
-from dataclasses import replace
-from typing import NamedTuple
-
 import numpy as np
 
 from runningbond.joints import JointPoints, wall_points, wall_stiffness
@@ -14,32 +11,13 @@ from runningbond.results.outcome import number
 from runningbond.results.reactions import WORKS
 from runningbond.scene import ANCHOR, Array, Scene
 
-NEVER_REACHED = 1e12
-"""Compressive strength [Pa] that no joint reaches: it has joints evaluated at points along them."""
+from .beds import Leaning, on_beds
 
 LITTLE_WAY = 1e-7
 """Shortest way of a mechanism at which its load is computed, relative to that on which it loses all of its load."""
 
 WAYS = 500
 """Number of ways between these two."""
-
-
-class Leaning(NamedTuple):
-    """A wall that rolls onto the edges of its joints as it leans."""
-
-    load: float  # largest λ on the way
-    moved: float  # displacement of the fastest corner there [m]
-
-    def __str__(self) -> str:
-        return f"as it leans it bears about {number(self.load)}, or less if joints elsewhere bend"
-
-
-def along_joints(scene: Scene) -> Scene:
-    """The scene with joints that bear along their whole length, at finite displacements too."""
-    if spreads(scene, finite=True):
-        return scene
-    materials = tuple(replace(each, compressive_strength=NEVER_REACHED) for each in scene.joint_materials)
-    return replace(scene, joint_materials=materials)
 
 
 def rolls(scene: Scene, outcome: Outcome, tolerance: float) -> str:
@@ -54,11 +32,14 @@ def rolls(scene: Scene, outcome: Outcome, tolerance: float) -> str:
     largest, bed = outcome.multiplier or 0.0, load_of_beds(scene, outcome)
     if bed is None and (further := leaning(scene, outcome)) is not None:  # the path ends before this load
         bed = further.load
-    if bed is None or bed >= (1 - tolerance) * largest:
+    least, less = (1 - tolerance) * largest, "joints elsewhere bend"
+    if (bed is None or bed >= least) and (leans := on_beds(scene, least)) is not None:
+        bed, less = leans.load, "joints slide"
+    if bed is None or bed >= least:
         return ""
     told = "joints carry forces only at their ends; pressed along them they roll onto their edges as the wall leans"
     remedy = "a joint.compressive_strength, even one that is never reached, spreads pressures along joints"
-    return f"{told}, and it bears about {number(max(bed, 0.0))}, or less if joints elsewhere bend; {remedy}"
+    return f"{told}, and it bears about {number(max(bed, 0.0))}, or less if {less}; {remedy}"
 
 
 def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:
@@ -101,7 +82,8 @@ def leaning(scene: Scene, outcome: Outcome) -> Leaning | None:
     if bed is None:
         return None
     top = int(bed.argmax())
-    return Leaning(max(float(bed[top]), 0.0), float(way[top]) * fastest_corner(scene.blocks, outcome.motion))
+    moved = float(way[top]) * fastest_corner(scene.blocks, outcome.motion)
+    return Leaning(max(float(bed[top]), 0.0), moved, rigid=True)
 
 
 def _of_beds(scene: Scene, outcome: Outcome, points: JointPoints, load: Array, far: Array) -> Array | None:

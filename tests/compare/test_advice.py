@@ -25,8 +25,8 @@ from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
 from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS
+from runningbond.models.beds import Leaning
 from runningbond.models.costs import estimate, pace
-from runningbond.models.edges import Leaning
 from runningbond.models.second_opinion import asks_others
 from runningbond.results import Outcome
 from runningbond.results.outcome import number

@@ -8,7 +8,8 @@ import pytest
 from dem.dynamic import dem_dynamic
 from runningbond.limit import limit
 from runningbond.models import run_model
-from runningbond.models.edges import along_joints, leaning, load_of_beds, rolls
+from runningbond.models.beds import along_joints
+from runningbond.models.edges import leaning, load_of_beds, rolls
 from runningbond.scene import Scene
 from tests.walls import courses
 

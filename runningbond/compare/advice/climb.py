@@ -13,8 +13,8 @@ import numpy as np
 from runningbond.draws import Scatter
 from runningbond.joints.wall_points import spreads
 from runningbond.models import check_tolerance, run_model
+from runningbond.models.beds import along_joints
 from runningbond.models.costs import Estimate, short_search, tolerance_of_draws
-from runningbond.models.edges import along_joints
 from runningbond.results import Outcome
 from runningbond.results.outcome import joined
 from runningbond.scene import Scene, SceneError

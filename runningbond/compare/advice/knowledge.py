@@ -11,8 +11,9 @@ from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
+from runningbond.models.beds import Leaning, on_beds
 from runningbond.models.costs import Estimate, cracks_anywhere, estimate, pace
-from runningbond.models.edges import Leaning, leaning
+from runningbond.models.edges import leaning
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError
@@ -59,6 +60,7 @@ class Knowledge:
     lowest: float | None = None  # smallest collapse load by a proof, a certificate or a history
     draws: int = 0  # number of histories that the last model followed up to collapse
     others: list[Outcome] = field(default_factory=list)  # histories of the last model that did not end in a collapse
+    rested: dict[float, Leaning | None] = field(default_factory=dict)  # whether it rests on beds under some loads
     contradicted: bool = False  # whether a history and narrow certified loads together span more than the tolerance
 
     def __post_init__(self) -> None:
@@ -179,13 +181,18 @@ class Knowledge:
     def on_edges(self) -> Leaning | None:
         """How the wall rolls onto the edges of its joints, if it then bears less than the answer by the tolerance.
 
+        Either those of the mechanism do, or the wall does not rest on beds of springs that bend everywhere.
         Joints that soften do so before they roll.
         """
         if self.answer is None or self.evidence == "finite" or self.softens:
             return None
         found = (leaning(self.scene, each) for each in (self.answer, self.followed) if each is not None)
-        leans, least = next(filter(None, found), None), self.answer.lower or 0.0
-        return leans if leans is not None and leans.load < (1 - self.tolerance) * least else None
+        leans, least = next(filter(None, found), None), (1 - self.tolerance) * (self.answer.lower or 0.0)
+        if leans is not None and leans.load < least:
+            return leans
+        if least not in self.rested:
+            self.rested[least] = on_beds(self.scene, least)
+        return self.rested[least]
 
     def soft_on_edges(self, leans: Leaning) -> bool:
         """Whether blocks must deform in a wall that rolls: its loss grows with the cube root of the compliance."""

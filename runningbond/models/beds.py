@@ -1,0 +1,197 @@
+"""Rigid blocks on beds of springs without tension, whose loads gain lever arms as the wall leans.
+
+A mechanism tells how a wall falls if all other joints are rigid. Where these are soft, the wall leans on them before
+the mechanism turns, or falls over one of them first. Here every joint bears along its whole length, and equilibrium is
+that of the moved wall: with forces F on a block at r from its centroid, its rotation ω adds a moment -ω Σ F · r.
+Joints with friction do not slide, even where they part: equilibrium is then the least energy, whatever the history, and
+walls that slide, which bear less, are left to other models.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array, vstack
+from scipy.sparse.linalg import SuperLU, splu
+
+from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness, wall_strength
+from runningbond.joints.wall_points import spreads
+from runningbond.limit.kinematics import dead_load, jump_operator, live_load, movable_freedoms
+from runningbond.results.mechanism import fastest_corner
+from runningbond.results.outcome import number
+from runningbond.scene import Array, Forces, Scene
+
+NEVER_REACHED = 1e12
+"""Compressive strength [Pa] that no joint reaches: it has joints evaluated at points along them."""
+
+POINTS = 17
+"""Number of points on a bed; with nine, as models have, walls rest under slightly larger loads than on springs."""
+
+BISECTIONS = 8
+"""Number of bisections of a load under which a wall does not rest."""
+
+ROUNDS = 20
+"""Number of times that moments of the leaning wall are computed from forces in joints."""
+
+SETTLED = 1e-6
+"""Relative change of these moments that counts as none."""
+
+ITERATIONS = 60
+"""Newton iterations until blocks are in balance; a wall that rests takes a few."""
+
+HALVINGS = 20
+"""Number of parts of a Newton step that are tried."""
+
+RESIDUAL = 1e-8
+"""Forces out of balance of a wall at rest, relative to its loads."""
+
+SYMMETRIC = {"SymmetricMode": True}
+
+LOOSE = 1e-9
+"""Stiffness of ground springs, relative to those of the closed joints, that hold blocks that nothing touches."""
+
+
+class Leaning(NamedTuple):
+    """A wall that rolls onto the edges of its joints as it leans."""
+
+    load: float  # largest λ on the way
+    moved: float  # displacement of the fastest corner there [m]
+    rigid: bool = False  # whether joints outside a mechanism were taken as rigid
+
+    def __str__(self) -> str:
+        less = "joints elsewhere bend" if self.rigid else "joints slide"
+        return f"as it leans it bears about {number(self.load)}, or less if {less}"
+
+
+def along_joints(scene: Scene) -> Scene:
+    """The scene with joints that bear along their whole length, at finite displacements too."""
+    if spreads(scene, finite=True):
+        return scene
+    materials = tuple(replace(each, compressive_strength=NEVER_REACHED) for each in scene.joint_materials)
+    return replace(scene, joint_materials=materials)
+
+
+def on_beds(scene: Scene, load: float) -> Leaning | None:
+    """Largest λ at which a wall on beds of springs rests, if it is below `load`.
+
+    None if it rests under `load`, for walls without stiffnesses or with held motions, ties or loads that move supports,
+    and if it is not found at rest under its dead load.
+    """
+    held = len(scene.pins) or len(scene.late_pins) or scene.is_led or len(scene.ties)
+    if held or load <= 0 or any(each.elasticity is None for each in scene.materials_of_joints):
+        return None
+    beds = _Beds(along_joints(scene))
+    start = beds.rest(0.0, np.zeros(len(beds.free)))
+    if start is None or beds.rest(load, start) is not None:
+        return None
+    rest, reached, step = start, 0.0, load / 2
+    for _ in range(BISECTIONS):
+        found = beds.rest(reached + step, rest)
+        if found is not None:
+            rest, reached = found, reached + step
+        step /= 2
+    motion = np.zeros(3 * len(scene.blocks))
+    motion[beds.free] = rest - start
+    return Leaning(reached, fastest_corner(scene.blocks, motion.reshape(-1, 3)))
+
+
+class _Beds:
+    """Joints of a scene as beds of springs."""
+
+    def __init__(self, scene: Scene) -> None:
+        points = wall_points(scene, lobatto(POINTS))
+        jump = jump_operator(points, scene.blocks.centroid)
+        self.free = movable_freedoms(scene)
+        self.jump = csr_array(vstack([jump.opening, jump.slip])[:, self.free])
+        stiffness = wall_stiffness(scene, points.joint)
+        strength = wall_strength(scene, points)
+        smooth = (strength.friction == 0) & (strength.cohesion == 0)
+        self.normal, self.shear = stiffness[0] * points.area, np.where(smooth, 0.0, stiffness[1] * points.area)
+        self.tension, self.size = strength.tension, scene.size
+        self.dead, self.live = dead_load(scene)[self.free], live_load(scene)[self.free]
+        closed = np.concatenate([self.normal, stiffness[1] * points.area])
+        self.ground = LOOSE * (self.jump.T @ diags_array(closed) @ self.jump).diagonal()
+        self.own, self.pushed = (_virials(scene, each) for each in (scene.dead_forces, scene.live_forces))
+        self.virials = _virials_of_joints(scene, points)
+
+    def rest(self, load: float, motion: Array) -> Array | None:
+        """Motion at rest under λ = `load`, sought from another motion; None if none is found that is stable."""
+        leaning = self._leaning(load, motion)
+        for _ in range(ROUNDS):
+            found = self._balanced(load, motion, leaning)
+            if found is None:
+                return None
+            motion, last, leaning = found, leaning, self._leaning(load, found)
+            if np.abs(leaning - last).max(initial=0.0) <= SETTLED * np.abs(last).max(initial=0.0):
+                return motion
+        return None
+
+    def _balanced(self, load: float, motion: Array, leaning: Array) -> Array | None:
+        """Motion in stable balance by Newton's method, given the moments of each block per rotation."""
+        outer = self.dead + load * self.live
+        least = RESIDUAL * float(np.linalg.norm(outer))
+        for _ in range(ITERATIONS):
+            force, normal = self._forces(motion)
+            unbalanced = outer - leaning * motion - self.jump.T @ force
+            springs = self.jump.T @ diags_array(np.concatenate([normal, self.shear])) @ self.jump
+            factors = _factors(springs + diags_array(leaning + self.ground))
+            stable = bool((factors.U.diagonal() > 0).all())
+            if np.linalg.norm(unbalanced) <= least:
+                return motion if stable else None
+            change = (factors if stable else _factors(springs + diags_array(self.ground))).solve(unbalanced)
+            if np.abs(motion + change).max() > self.size:
+                return None
+            motion = motion + self._part(outer, leaning, motion, change) * change
+        return None
+
+    def _part(self, outer: Array, leaning: Array, motion: Array, change: Array) -> float:
+        """Part of a step at which the energy is about lowest: forces out of balance do little work along the step."""
+
+        def work(part: float) -> float:
+            tried = motion + part * change
+            return float((outer - leaning * tried - self.jump.T @ self._forces(tried)[0]) @ change)
+
+        first, low, high, part = work(0.0), 0.0, 2.0, 1.0
+        for _ in range(HALVINGS):
+            left = work(part)
+            if abs(left) <= first / 2:
+                break
+            low, high = (part, high) if left > 0 else (low, part)
+            part = (low + high) / 2
+        return part
+
+    def _forces(self, motion: Array) -> tuple[Array, Array]:
+        """Normal and shear forces of the points, and their normal stiffness."""
+        opening, slip = (self.jump @ motion).reshape(2, -1)
+        pull = self.normal * opening
+        force = np.concatenate([np.minimum(pull, self.tension), self.shear * slip])
+        return force, np.where(pull <= self.tension, self.normal, 0.0)
+
+    def _leaning(self, load: float, motion: Array) -> Array:
+        """Moments of blocks per rotation, on the blocks' freedoms [N m]."""
+        levers = np.zeros((len(self.own), 3))
+        levers[:, 2] = self.virials @ self._forces(motion)[0] + self.own + load * self.pushed
+        return np.asarray(levers.ravel()[self.free])
+
+
+def _factors(stiffness: csr_array) -> SuperLU:
+    """Factors of a symmetric matrix without pivoting, whose pivots have the signs of its eigenvalues."""
+    return splu(csc_array(stiffness), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+
+
+def _virials(scene: Scene, forces: Forces) -> Array:
+    """Sum of F · r over forces at points of each block, at r from its centroid, ``(nb,)`` [J]."""
+    virial = np.zeros(len(scene.blocks))
+    arm = forces.at - scene.blocks.centroid[forces.block]
+    np.add.at(virial, forces.block, (forces.force * arm).sum(axis=1))
+    return virial
+
+
+def _virials_of_joints(scene: Scene, points: JointPoints) -> csr_array:
+    """The same of normal and shear forces of joint points, ``(nb, 2 np)``: b pulls on a, and a on b."""
+    arms = points.position[:, None] - scene.blocks.centroid[points.block]
+    along = [(arms @ axis[:, :, None])[:, :, 0] * (1.0, -1.0) for axis in (points.normal, points.tangent)]
+    column = np.tile(np.arange(2 * len(points))[:, None], (1, 2))
+    row = np.tile(points.block, (2, 1))
+    shape = len(scene.blocks), 2 * len(points)
+    return csr_array(coo_array((np.concatenate(along).ravel(), (row.ravel(), column.ravel())), shape=shape))
