@@ -80,12 +80,13 @@ def sweep(
     for number, case in enumerate(cases):
         try:
             scene = wall.with_(case).scene
+            name = _name(scene, model, tolerance)
         except SceneError as refusal:
             names.append(f"case {number}")
             refusals[names[-1], model.name] = refusal
-        else:  # named after its input, an outcome is reused when keys or values are added
-            names.append(fingerprint(scene, model, tolerance)[:16])
-            scenes[names[-1]] = scene
+        else:
+            names.append(name)
+            scenes[name] = scene
     if refusals and not scenes:
         raise next(iter(refusals.values()))
     for name, scene in list(scenes.items()):
@@ -105,6 +106,16 @@ def sweep(
         answers[cell] = {"status": "refused", "message": str(reason)}
     rows = [{**answers[name, model.name], **case} for name, case in zip(names, cases, strict=True)]
     return table({key: [row.get(key) for row in rows] for key in (*values_of, *ANSWER)})
+
+
+def _name(scene: Scene, model: Model, tolerance: float) -> str:
+    """Name of a case after its input, so that its outcome is reused when keys or values are added."""
+    try:
+        return fingerprint(scene, model, tolerance)[:16]
+    except SceneError:
+        raise
+    except Exception as error:  # raised by the user's load, whose forces are part of the input
+        raise SceneError("load", f"raises {type(error).__name__}: {error}") from error
 
 
 def _values_of(changes: object) -> dict[str, list[Any]]:

@@ -265,7 +265,7 @@ def _judge(
         return replace(outcome, message="interrupted: the bracket so far")
     except Unstable as error:
         return replace(outcome, status="failed", message=str(error))
-    if lost > UNACCOUNTED:
+    if not lost <= UNACCOUNTED:  # also if the law's energy is no number
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if excluded:
         return replace(outcome, message=excluded)

@@ -156,7 +156,7 @@ def _followed(
     gone = float(np.ptp([row.works for row in traverse.rows], axis=0).sum()) if traverse.rows else 0.0
     lost = run.unaccounted(last, max(gone, lead.least_work), since=state)
     outcome = _arrays(_path(outcome, scene, run, points, traverse), lead, traverse, wall.point_order)
-    if lost > UNACCOUNTED:
+    if not lost <= UNACCOUNTED:  # also if the law's energy is no number
         message = f"{lost:.1%} of the work of the loads is unaccounted for"
         return replace(outcome, status="failed", message=message), None
     outcome = _judge(outcome, lead, traverses, tolerance)

@@ -61,14 +61,18 @@ class Ledger:
 class Unstable(ArithmeticError):
     """Raised if a run spends more energy than it was supplied with, as it does with too long a time step.
 
-    The message contains the number of steps, the time step taken and, if it is longer, one that is safe [s].
+    The message contains the number of steps, the time step taken and, if it is longer, one that is safe [s]. A run
+    whose motion is no longer a number (`is_lost`) ends as well: its joints' law may give none.
     """
 
-    def __init__(self, steps: int, step: float, safe: float) -> None:
-        message = f"unstable: more energy was spent than supplied after {steps} time steps of {step:.4g} s"
-        why = (
-            f"a step of {safe:.4g} s is safe" if step > safe else "the step is safe for vibrations, not for any impact"
-        )
+    def __init__(self, steps: int, step: float, safe: float, *, is_lost: bool = False) -> None:
+        what = "the motion is no longer finite" if is_lost else "more energy was spent than supplied"
+        message = f"unstable: {what} after {steps} time steps of {step:.4g} s"
+        why = "the step is safe for vibrations, not for any impact"
+        if step > safe:
+            why = f"a step of {safe:.4g} s is safe"
+        elif is_lost:
+            why = "the law of the joints may give tractions that are no numbers"
         super().__init__(f"{message}; {why}")
         self.steps = steps
 
@@ -257,8 +261,9 @@ class Run:
                 load = load + taken * speed * live
             state.steps += taken
             state.time += taken * self.dt
-            if not stable:
-                raise Unstable(state.steps, self.dt, self.safe_step)
+            if not stable or not math.isfinite(state.external):
+                is_lost = not math.isfinite(state.external)
+                raise Unstable(state.steps, self.dt, self.safe_step, is_lost=is_lost)
         return total
 
     def _live(self) -> Array:

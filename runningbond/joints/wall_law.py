@@ -11,6 +11,7 @@ from .coulomb import COULOMB, IMPACTS
 from .interface import INTERFACE
 from .law import KernelLaw, Law
 from .softening import SOFTENING
+from .trial import constants_of
 
 SEATED = replace(INTERFACE, name=SOFTENING.name)
 """Softening with a plastic closure; for materials that neither crush nor close the tractions are the same."""
@@ -87,5 +88,5 @@ def kernel_law(materials: Sequence[JointMaterial], of_point: Indices, law: Law |
     law = law or common_law(materials)
     start = np.flatnonzero(np.diff(of_point, prepend=-1))
     segments = np.append(start, len(of_point)).astype(np.uint64)
-    constants = np.array([law.constants(material) for material in materials])
+    constants = constants_of(law, materials)
     return KernelLaw(law, segments, np.ascontiguousarray(constants[of_point[start]]))

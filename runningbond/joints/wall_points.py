@@ -9,6 +9,7 @@ from .mohr_coulomb import PointStrength, truncated_cone
 from .point_law import PointLaw
 from .points import JointPoints, Rule, joint_points, lobatto
 from .stiffness import joint_stiffness, stiffest
+from .trial import CheckedLaw, cone_of
 
 BETWEEN = 9
 """Number of points on a joint that softens, crushes or closes: with 5 points, a toe that crushes carries 2.3 % more,
@@ -117,7 +118,7 @@ def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
 def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
     """Tan φ, f_t [Pa] and shear at that tension [Pa] of joints of a scene from their laws, three ``(n,)``."""
     laws = [(material, material.law) for material in scene.joint_materials]
-    cones = [law.cone(material) if isinstance(law, Law) else truncated_cone(material) for material, law in laws]
+    cones = [cone_of(law, material) if isinstance(law, Law) else truncated_cone(material) for material, law in laws]
     friction, tension, shear = np.array(cones)[scene.material_of_joint[joint]].T
     return friction, tension, shear
 
@@ -159,4 +160,5 @@ def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Arra
     law = common_law(scene.materials_of_joints)
     if law.response is None:
         raise SceneError("joint.law", f'"{law.name}" has no response with a tangent, which dem-static needs')
-    return law.response(strength, normal, shear)
+    response = law.response(strength, normal, shear)
+    return response if law.response is PointLaw else CheckedLaw(strength, normal, shear, response, law.name)

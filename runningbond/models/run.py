@@ -64,7 +64,8 @@ def run_model(
     except SceneError:
         raise
     except Exception as error:  # a bug in the suite must not abort a campaign, nor end in a traceback
-        return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
+        message = " ".join(f"{type(error).__name__}: {error}".split())  # compilers' messages have many lines
+        return Outcome(scene.title, model.name, "failed", message=message)
     if not isinstance(outcome, Outcome):
         raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
     finite = model.is_finite or parameters.get("displacements") == "finite"

@@ -101,6 +101,11 @@ class Outcome:
     moved: float | None = None
 
     def __post_init__(self) -> None:
+        for name, kind in (("multiplier", float), ("lower", float), ("upper", float), ("dofs", int), ("steps", int)):
+            if (value := getattr(self, name)) is not None:  # numpy's numbers are written into no JSON file
+                object.__setattr__(self, name, kind(value))
+        object.__setattr__(self, "seconds", float(self.seconds))
+        object.__setattr__(self, "message", " ".join(self.message.split("\n")))
         for name, columns in ARRAYS.items():
             object.__setattr__(self, name, frozen(getattr(self, name)).reshape(-1, columns))
         object.__setattr__(self, "path_columns", tuple(map(str, self.path_columns)))
@@ -109,6 +114,8 @@ class Outcome:
             raise ValueError(f"path has {len(self.path)} rows: must have as many as the curve, or none")
         if self.status not in STATUSES:
             raise ValueError(f"status = {self.status!r}: must be one of {', '.join(STATUSES)}")
+        if not math.isfinite(self.seconds):
+            raise ValueError(f"seconds = {self.seconds}: must be finite")
         numbers = [x for x in (self.lower, self.multiplier, self.upper) if x is not None]
         if not all(math.isfinite(x) for x in numbers):
             raise ValueError(f"bracket = {numbers}: a number that does not exist is None")

@@ -1,5 +1,8 @@
 """Whether a scene can be analysed: its blocks stand on something, and its loads act on something that moves."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 import shapely
 
@@ -42,20 +45,39 @@ def check_built(scene: Scene) -> None:
         load.check(scene, key)
         if isinstance(load, Settlement):
             continue
-        with keys_of(key, "load.live"):
+        with keys_of(key, "load.live"), _own_errors(f"{key}: {type(load).__name__}.forces"):
             forces = load.forces(scene)
         _check_forces(scene, key, load, forces)
     if len(scene.load.live) > 1 and _cancel(scene):
         raise SceneError("load.live", "must not cancel out on every block: nothing is multiplied by λ")
 
 
+@contextmanager
+def _own_errors(key: str) -> Iterator[None]:
+    """Convert errors in the code of a user's load into a `SceneError` under a key: only that load is at fault."""
+    try:
+        yield
+    except SceneError:
+        raise
+    except Exception as error:
+        raise SceneError(key, f"raises {type(error).__name__}: {error}") from error
+
+
 def _check_forces(scene: Scene, key: str, load: Action, forces: object) -> None:
     """Refuse a load whose forces are not of type `Forces`, not finite, or all zero on movable blocks."""
+    own = f"{key}: {type(load).__name__}.forces"
     if not isinstance(forces, Forces):
-        raise SceneError(f"{key}: {type(load).__name__}.forces", "must return Forces", forces)
+        raise SceneError(own, "must return Forces", forces)
+    count, points = len(scene.blocks), np.size(forces.block)
+    expected = [(count, 2), (count,), (points,), (points, 2), (points, 2)]
+    parts = forces.acceleration, forces.moment, forces.block, forces.at, forces.force
+    if [part.shape for part in parts] != expected:
+        raise SceneError(own, f"must return Forces.on the scene: of {count} blocks, and as many points as forces")
+    if points and not 0 <= forces.block.min() <= forces.block.max() < count:
+        raise SceneError(own, f"must name blocks by numbers, 0 … {count - 1}", forces.block.tolist())
     moves = ~scene.fixed
-    parts = forces.acceleration[moves], forces.moment[moves], forces.force[moves[forces.block]]
-    if not 0 < sum(float(np.abs(part).sum()) for part in parts) < np.inf:
+    felt = forces.acceleration[moves], forces.moment[moves], forces.force[moves[forces.block]]
+    if not 0 < sum(float(np.abs(part).sum()) for part in felt) < np.inf:
         raise SceneError(key, "must put finite forces on the blocks, not all of them zero on those that move", load)
 
 

@@ -3,6 +3,7 @@
 import runpy
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
@@ -61,6 +62,31 @@ def test_refused_walls_are_rows() -> None:
     table = rb.sweep(WALL, {"joint.cohesion": [0.0, 1e3]}, "homog", jobs=1)
     assert list(table["status"]) == ["collapse", "refused"]
     assert "dry joints" in table["message"][1]
+
+
+@dataclass(frozen=True)
+class Wind(Action):
+    """A load with no forces at some speeds, and with some only for a while."""
+
+    speed: float
+
+    def forces(self, scene: Scene) -> Forces:
+        ASKED.append(self.speed)
+        if self.speed == 3.0 and ASKED.count(3.0) > 1:
+            raise RuntimeError("calm")
+        return Forces.on(scene, acceleration=(1.0 / self.speed, 0.0))
+
+
+ASKED: list[float] = []
+
+
+def test_load_that_raises_is_a_row() -> None:
+    """It ended the sweep with its own error, and with it the rows of all other loads."""
+    ASKED.clear()
+    table = rb.sweep(WALL, {"load.live": [Wind(2.0), Wind(0.0), Wind(3.0)]}, "limit", jobs=1)
+    assert list(table["status"]) == ["collapse", "refused", "refused"]
+    assert "Wind.forces: raises ZeroDivisionError" in table["message"][1]
+    assert table["message"][2].endswith("raises RuntimeError: calm")
 
 
 @pytest.mark.parametrize("changes", [{"joint.frictoin": [0.3, 0.4]}, {"joint.friction": [-1.0]}])

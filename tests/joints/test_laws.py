@@ -207,3 +207,119 @@ def test_overlap_counts_as_crushing_only_in_law_that_crushes(row: tuple[str, ...
     for name in row:
         history[law.row(name)] = 0.0, 1e-5
     assert points.crushed(history).tolist() == crushed
+
+
+@kernel
+def of_a_fifth_row(
+    opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array
+) -> None:
+    """Springs that count their evaluations in a row of the history after the common ones."""
+    springs(opening, slip, of, history, viscosity, n, t)
+    for i in range(opening.size):
+        history[4, i] += 1.0
+
+
+@kernel
+def without_numbers(
+    opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array
+) -> None:
+    """Springs that give no number where joints open."""
+    springs(opening, slip, of, history, viscosity, n, t)
+    for i in range(opening.size):
+        if opening[i] > 1e-5:
+            n[i] = np.nan
+
+
+@kernel
+def without_tractions(
+    opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array
+) -> None:
+    """A kernel that writes nothing."""
+
+
+def test_kernel_that_writes_beyond_its_history_is_refused() -> None:
+    """It would write over other memory: the process ended with "double free or corruption", or anywhere else."""
+    law = Law("counting", constants_of_springs, of_a_fifth_row, COMMON_ROWS, stored_in_springs)
+    with pytest.raises(SceneError, match=r'joint\.law: "counting" writes to rows of the history .* it names 4'):
+        rigid_system(tower(law=law))
+    rigid_system(tower(law=replace(law, history=(*COMMON_ROWS, "evaluations"))))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"kernel": without_tractions}, "must write finite tractions and histories"),
+        ({"kernel": springs.py_func}, "needs a kernel compiled with"),
+        ({"constants": lambda material: (1e9, 4e8)}, "must have constants k_n, k_t, f_t"),
+        ({"constants": lambda material: None}, "must have constants k_n, k_t, f_t"),
+        ({"constants": lambda material: (0.0, 4e8, np.inf)}, "must have constants that are numbers, k_n above zero"),
+        ({"constants": lambda material: (1e9, np.nan, np.inf)}, "must have constants that are numbers"),
+        ({"cone": lambda material: (0.6, 0.0)}, "must have a cone of three numbers, none"),
+        ({"cone": lambda material: (np.nan, 0.0, 0.0)}, "must have a cone of three numbers, none"),
+        ({"cone": lambda material: (-0.6, 0.0, 0.0)}, "must have a cone of three numbers, none"),
+    ],
+)
+def test_law_that_no_wall_can_rely_on_is_refused(given: dict[str, object], said: str) -> None:
+    law = Law(**{**vars(SPRINGS), "name": "wrong", **given})
+    with pytest.raises(SceneError, match=rf'joint\.law.*: "wrong" {said}'):
+        dem_dynamic(tower(law=law))
+
+
+def test_wall_that_moves_by_no_number_has_failed() -> None:
+    """The motion was NaN up to the end of the budget, and the wall "neither rested nor fell"."""
+    law = Law("torn", constants_of_springs, without_numbers, COMMON_ROWS, stored_in_springs)
+    outcome = dem_dynamic(tower(law=law))
+    assert (outcome.status, outcome.multiplier) == ("failed", None)
+    assert "the motion is no longer finite after" in outcome.message
+
+
+def test_energy_that_is_no_number_is_unaccounted_for() -> None:
+    """It passed every check, and the message said: work accounted for to nan of it."""
+    law = replace(COULOMB, name="lost", stored=lambda points, opening, normal, tangential: np.nan * opening)
+    assert dem_dynamic(tower(law=law)).status == "failed"
+
+
+class _Responds(PointLaw):
+    """Coulomb's points with another response once one of them has slid."""
+
+    def __call__(self, opening: Array, slip: Array, plastic_slip: Array) -> PointResponse:
+        found = super().__call__(opening, slip, plastic_slip)
+        return self.other(found) if found.plastic_slip.any() else found
+
+    def other(self, found: PointResponse) -> PointResponse:
+        return found
+
+
+class _WithoutSlip(_Responds):
+    def other(self, found: PointResponse) -> PointResponse:
+        return replace(found, plastic_slip=np.where(found.plastic_slip == 0, 0.0, np.nan))
+
+
+class _WithoutTangent(_Responds):
+    def other(self, found: PointResponse) -> PointResponse:
+        return replace(found, tangent=np.nan * found.tangent)
+
+
+class _OfOnePoint(_Responds):
+    def other(self, found: PointResponse) -> PointResponse:
+        return replace(found, normal=found.normal[:1])
+
+
+class _TooStrong(_Responds):
+    def other(self, found: PointResponse) -> PointResponse:
+        return replace(found, tangential=1.5 * found.tangential)
+
+
+@pytest.mark.parametrize(
+    ("response", "said"),
+    [
+        (_WithoutSlip, "responds with a plastic slip not all finite"),  # it fell at the first slip, as a collapse
+        (_WithoutTangent, "responds with a tangent not all finite"),
+        (_OfOnePoint, "must respond with forces and a plastic slip"),
+        (_TooStrong, "responds with forces beyond its cone"),  # it collapsed above the bound of limit analysis
+    ],
+)
+def test_response_that_no_wall_can_rely_on_is_refused(response: type[PointLaw], said: str) -> None:
+    assert dem_static(tower(law=replace(COULOMB, name="right", response=_Responds))).status == "collapse"
+    with pytest.raises(SceneError, match=rf'joint\.law: "wrong" {said}'):
+        dem_static(tower(law=replace(COULOMB, name="wrong", response=response)))

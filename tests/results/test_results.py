@@ -69,6 +69,18 @@ def test_inconsistent_outcome_is_refused(contents: dict[str, Any]) -> None:
         Outcome("wall", "limit", **contents)
 
 
+def test_numbers_of_numpy_and_lines_of_a_message_can_be_stored(tmp_path: Path) -> None:
+    """A user's model that counted its steps with numpy ended the whole sweep with a TypeError of the JSON writer."""
+    given = {"multiplier": np.float32(0.5), "lower": np.int64(0), "dofs": np.int64(3), "seconds": np.float64(1.0)}
+    outcome = Outcome("wall", "own", "collapse", **given, message="topples\nas one")  # type: ignore[arg-type]
+    save_outcome(outcome, tmp_path)
+    found, _ = load_outcome(tmp_path)
+    assert found.summary() == outcome.summary()
+    assert (found.multiplier, found.lower, found.dofs, found.message) == (0.5, 0.0, 3, "topples as one")
+    with pytest.raises(ValueError, match="seconds = nan: must be finite"):
+        Outcome("wall", "own", "collapse", 0.5, seconds=math.nan)
+
+
 def test_repr_of_outcome_is_one_line() -> None:
     """Without its arrays, which would fill pages for a wall of a thousand blocks."""
     shown = repr(Outcome("wall", "limit", "collapse", 0.5, 0.5, 0.5, motion=np.ones((1000, 3))))

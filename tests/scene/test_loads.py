@@ -171,7 +171,7 @@ def test_loads_have_the_same_resultants_on_rigid_and_deformable_blocks() -> None
 class Moments(Action):
     """A moment [N m] on every block."""
 
-    moment: float
+    moment: Any
 
     def forces(self, scene: Scene) -> Forces:
         """The same moment on each block."""
@@ -189,6 +189,10 @@ class Push(Action):
     def forces(self, scene: Scene) -> Forces:
         """The force, or `given` if that is set."""
         return Forces.on(scene, block=self.block, at=self.at, force=(1.0, 0.0)) if self.given == () else self.given
+
+
+OF_ONE_BLOCK = Forces(np.ones((1, 2)), np.zeros(1), np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))
+OF_NO_BLOCK = Forces(np.ones((79, 2)), np.zeros(79), np.array([-1]), np.zeros((1, 2)), np.ones((1, 2)))
 
 
 def test_point_load_beside_the_wall_is_refused_with_the_nearest_valid_point() -> None:
@@ -270,6 +274,10 @@ def test_moments_add_and_are_neither_mass_nor_point_forces() -> None:
         (Push([True, False]), "load.live.block = [True, False]: must be numbers of blocks, 0 … 78"),
         (Push([0], (float("nan"), 0.0)), "load.live.at = [[nan, 0.0]]: must be finite"),
         (Push([0], given=None), "load.live: Push.forces: must return Forces"),
+        (Push([0], given=OF_ONE_BLOCK), "load.live: Push.forces: must return Forces.on the scene: of 79 blocks"),
+        (Push([0], given=OF_NO_BLOCK), "load.live: Push.forces = [-1]: must name blocks by numbers, 0 … 78"),
+        (Moments((1.0, 2.0)), "load.live: Moments.forces: raises ValueError: operands could not be broadcast"),
+        ([DOWN, Moments("N m")], "load.live[1]: Moments.forces: raises "),
     ],
 )
 def test_invalid_loads_are_refused(live: Any, said: str) -> None:
