@@ -254,6 +254,27 @@ def test_nested_transformations_are_combined(tmp_path: Path) -> None:
     assert blocks[2] == pytest.approx((free + 10, low))
 
 
+@pytest.mark.parametrize("last", [[0.1, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 2.0], None])
+def test_transformation_that_is_not_affine_is_refused(last: list[float] | None, tmp_path: Path) -> None:
+    """Its last row was left out, so that the wall had another shape than in COMPAS, which divides by it."""
+    found = model()
+    moved = moving(0, 0)
+    moved["data"]["matrix"][3:] = [] if last is None else [last]
+    found["data"]["transformation"] = moved
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    with pytest.raises(SceneError, match="transformation = .*: must be a matrix of 4 × 4 whose last row is 0, 0, 0, 1"):
+        read_drawing(tmp_path / "wall.json", "m")
+
+
+@pytest.mark.parametrize("layout", [assembly, untyped, model])
+def test_support_that_is_neither_true_nor_false_is_refused(layout: Any, tmp_path: Path) -> None:
+    """ "false", as text, made the block a support."""
+    text = json.dumps(layout())
+    (tmp_path / "wall.json").write_text(text.replace('"is_support": true', '"is_support": "false"'))
+    with pytest.raises(SceneError, match="is_support = 'false': must be true or false"):
+        read_drawing(tmp_path / "wall.json", "m")
+
+
 def without_zeros(value: Any) -> Any:
     """Remove zero coordinates of mesh vertices, as COMPAS does for default values."""
     if isinstance(value, list):

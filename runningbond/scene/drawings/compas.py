@@ -64,7 +64,7 @@ def read_compas(path: Path, unit: float, thickness: float | None = None) -> tupl
     except (RecursionError, ValueError) as error:
         raise SceneError(KEY, f"is not a valid JSON file: {error}", str(path)) from error
     try:
-        found = [(name, *_mesh(block, name), held) for name, block, held in _blocks(content)]
+        found = [(name, *_mesh(block, name), _is_held(held, name)) for name, block, held in _blocks(content)]
     except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
         if isinstance(error, SceneError):
             raise
@@ -77,6 +77,13 @@ def read_compas(path: Path, unit: float, thickness: float | None = None) -> tupl
     note = f"assembly: read in its {'xyz'[plane[0]]}-{'xyz'[plane[1]]} plane"
     note += f"; {thick:.6g} thick in the file's unit, in place of which wall.thickness counts" if thick else ""
     return [o for o, held in outlines if not held], [o for o, held in outlines if held], note
+
+
+def _is_held(value: Any, name: str) -> bool:
+    """Whether a block is a support, by its attribute; None is no support."""
+    if value is None or value in (0, 1):
+        return bool(value)
+    raise SceneError(f"{KEY}, {name}.is_support", "must be true or false", value)
 
 
 def _payload(value: Any) -> Any:
@@ -139,8 +146,14 @@ def _placed(model: Any) -> dict[str, Array]:
 
 
 def _matrix(transformation: Any) -> Array:
-    """Matrix ``(4, 4)`` of a transformation; the identity if there is none."""
-    return np.eye(4) if transformation is None else np.array(transformation["data"]["matrix"], dtype=float)
+    """Matrix ``(4, 4)`` of an affine transformation; the identity if there is none."""
+    if transformation is None:
+        return np.eye(4)
+    matrix = np.array(transformation["data"]["matrix"], dtype=float)
+    if matrix.shape != (4, 4) or matrix[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
+        what = "must be a matrix of 4 × 4 whose last row is 0, 0, 0, 1"
+        raise SceneError(f"{KEY}, transformation", what, matrix.tolist())
+    return matrix
 
 
 def _mesh(block: tuple[Any, Any], name: str) -> tuple[Array, list[list[int]]]:
