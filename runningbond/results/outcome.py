@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -102,8 +103,11 @@ class Outcome:
 
     def __post_init__(self) -> None:
         for name, kind in (("multiplier", float), ("lower", float), ("upper", float), ("dofs", int), ("steps", int)):
-            if (value := getattr(self, name)) is not None:  # numpy's numbers are written into no JSON file
+            value = getattr(self, name)
+            if isinstance(value, Real):  # numpy's numbers are written into no JSON file
                 object.__setattr__(self, name, kind(value))
+            elif value is not None:
+                raise ValueError(f"{name} = {value!r}: must be a number")
         object.__setattr__(self, "seconds", float(self.seconds))
         object.__setattr__(self, "message", " ".join(self.message.split("\n")))
         for name, columns in ARRAYS.items():

@@ -79,6 +79,8 @@ def test_numbers_of_numpy_and_lines_of_a_message_can_be_stored(tmp_path: Path) -
     assert (found.multiplier, found.lower, found.dofs, found.message) == (0.5, 0.0, 3, "topples as one")
     with pytest.raises(ValueError, match="seconds = nan: must be finite"):
         Outcome("wall", "own", "collapse", 0.5, seconds=math.nan)
+    with pytest.raises(ValueError, match="dofs = 'many': must be a number"):
+        Outcome("wall", "own", "collapse", 0.5, dofs="many")  # type: ignore[arg-type]
 
 
 def test_repr_of_outcome_is_one_line() -> None:
