@@ -105,7 +105,7 @@ class Outcome:
         for name, kind in (("multiplier", float), ("lower", float), ("upper", float), ("dofs", int), ("steps", int)):
             value = getattr(self, name)
             if isinstance(value, Real):  # numpy's numbers are written into no JSON file
-                object.__setattr__(self, name, kind(value))
+                object.__setattr__(self, name, kind(float(value)))
             elif value is not None:
                 raise ValueError(f"{name} = {value!r}: must be a number")
         object.__setattr__(self, "seconds", float(self.seconds))
