@@ -150,7 +150,8 @@ def _matrix(transformation: Any) -> Array:
     if transformation is None:
         return np.eye(4)
     matrix = np.array(transformation["data"]["matrix"], dtype=float)
-    if matrix.shape != (4, 4) or matrix[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
+    # An inverse may have rounding in its last row.
+    if matrix.shape != (4, 4) or not np.allclose(matrix[3], (0.0, 0.0, 0.0, 1.0), rtol=0.0, atol=1e-12):
         what = "must be a matrix of 4 × 4 whose last row is 0, 0, 0, 1"
         raise SceneError(f"{KEY}, transformation", what, matrix.tolist())
     return matrix
