@@ -22,8 +22,8 @@ WALLS = {wall.name: wall for wall in read_folder(SHIPPED[1])}
 HEIGHT = 0.248
 
 
-def squat(softening: str, way: float = 6e-4) -> Scene:
-    """Four courses of J7D, two bricks long, pushed by `way` [m]."""
+def squat(softening: str, way: float = 6e-4, rate: float = 0.04) -> Scene:
+    """Four courses of J7D, two bricks long, pushed by `way` [m] at a `rate` [m/s]."""
     path = WALLS["J7D"].scene_file
     assert path is not None
     tables: dict[str, Any] = copy.deepcopy(read_description(path))
@@ -31,7 +31,7 @@ def squat(softening: str, way: float = 6e-4) -> Scene:
     tables["joint"]["softening"] = softening
     tables["beam"] |= {
         "force": [0, -44e3],
-        "drive": {"displacement": [way, 0], "rate": 0.04, "at": HEIGHT},
+        "drive": {"displacement": [way, 0], "rate": rate, "at": HEIGHT},
     }
     return scene_from_dict(tables)
 
@@ -58,7 +58,7 @@ IN_MOTION = [name for name, rung in LADDER.items() if rung.base in ("dem-dynamic
 @pytest.mark.parametrize("name", [*(each for each in IN_MOTION if each != "fem-cracking"), *at_length("fem-cracking")])
 def test_models_of_the_ladder_run_under_the_campaigns_observer(name: str) -> None:
     """As `runningbond validate` runs them: under an observer that keeps moments, except for pieces of blocks."""
-    answer = Task("squat", squat("exponential", 5e-5), LADDER[name].model, 0.01).run()
+    answer = Task("squat", squat("exponential", 5e-5, 0.01), LADDER[name].model, 0.01).run()
     assert answer.outcome is not None, answer.reason
     assert answer.outcome.status in ("collapse", "unbounded", "undecided"), answer.outcome.message
     assert len(answer.outcome.curve) > 10
