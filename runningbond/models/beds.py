@@ -7,6 +7,7 @@ Joints with friction do not slide, even where they part: equilibrium is then the
 walls that slide, which bear less, are left to other models.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from scipy.sparse import coo_array, csc_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import SuperLU, splu
 
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness, wall_strength
+from runningbond.joints.closure import closure_curve
 from runningbond.joints.wall_points import spreads
 from runningbond.limit.kinematics import dead_load, jump_operator, live_load, movable_freedoms
 from runningbond.results.mechanism import fastest_corner
@@ -27,8 +29,8 @@ NEVER_REACHED = 1e12
 POINTS = 17
 """Number of points on a bed; with nine, as models have, walls rest under slightly larger loads than on springs."""
 
-BISECTIONS = 8
-"""Number of bisections of a load under which a wall does not rest."""
+FINEST = 1 / 256
+"""Smallest step of the load, relative to that under which a wall is to rest."""
 
 ROUNDS = 20
 """Number of times that moments of the leaning wall are computed from forces in joints."""
@@ -39,8 +41,11 @@ SETTLED = 1e-6
 ITERATIONS = 60
 """Newton iterations until blocks are in balance; a wall that rests takes a few."""
 
-HALVINGS = 20
-"""Number of parts of a Newton step that are tried."""
+FAR = 1.0
+"""Rotation of a block, or displacement relative to the size of the wall, at which it has fallen."""
+
+PARTS = 20
+"""Number of parts or multiples of a Newton step that are tried."""
 
 RESIDUAL = 1e-8
 """Forces out of balance of a wall at rest, relative to its loads."""
@@ -59,6 +64,8 @@ class Leaning(NamedTuple):
     rigid: bool = False  # whether joints outside a mechanism were taken as rigid
 
     def __str__(self) -> str:
+        if not self.load:
+            return "as it leans it falls under its dead load"
         less = "joints elsewhere bend" if self.rigid else "joints slide"
         return f"as it leans it bears about {number(self.load)}, or less if {less}"
 
@@ -71,28 +78,56 @@ def along_joints(scene: Scene) -> Scene:
     return replace(scene, joint_materials=materials)
 
 
+class Lost(Exception):
+    """Neither rest nor fall was found, because of rounding or of too few iterations."""
+
+
 def on_beds(scene: Scene, load: float) -> Leaning | None:
-    """Largest λ at which a wall on beds of springs rests, if it is below `load`.
+    """Largest λ at which a wall on beds of springs rests, if it is below `load`; 0 if it falls under its dead load.
 
     None if it rests under `load`, for walls without stiffnesses or with held motions, ties or loads that move supports,
-    and if it is not found at rest under its dead load.
+    and if the search is `Lost`.
     """
     held = len(scene.pins) or len(scene.late_pins) or scene.is_led or len(scene.ties)
     if held or load <= 0 or any(each.elasticity is None for each in scene.materials_of_joints):
         return None
     beds = _Beds(along_joints(scene))
-    start = beds.rest(0.0, np.zeros(len(beds.free)))
-    if start is None or beds.rest(load, start) is not None:
+    try:
+        part, start = _climb(lambda share, motion: beds.rest(share, 0.0, motion), 1.0, np.zeros(len(beds.free)))
+        if part < 1:
+            return Leaning(0.0, 0.0)
+        reached, rest = _climb(lambda multiplier, motion: beds.rest(1.0, multiplier, motion), load, start)
+    except Lost:
         return None
-    rest, reached, step = start, 0.0, load / 2
-    for _ in range(BISECTIONS):
-        found = beds.rest(reached + step, rest)
-        if found is not None:
-            rest, reached = found, reached + step
-        step /= 2
+    if reached >= load:
+        return None
     motion = np.zeros(3 * len(scene.blocks))
     motion[beds.free] = rest - start
     return Leaning(reached, fastest_corner(scene.blocks, motion.reshape(-1, 3)))
+
+
+def _climb(rest: Callable[[float, Array], Array | None], load: float, start: Array) -> tuple[float, Array]:
+    """Largest load up to `load` under which a wall rests, and its motion there, from its motion under none.
+
+    A load under which it falls, or is lost, is tried again from nearer: a long step may pass a rest.
+    """
+    reached, motion, step = 0.0, start, load
+    while reached < load:
+        found, lost = None, False
+        following = min(reached + step, load)
+        try:
+            found = rest(following, motion)
+        except Lost:
+            lost = True
+        if found is not None:
+            reached, motion, step = following, found, 2 * step
+        elif step > FINEST * load:
+            step = (following - reached) / 2
+        elif lost:
+            raise Lost
+        else:
+            break
+    return reached, motion
 
 
 class _Beds:
@@ -107,28 +142,37 @@ class _Beds:
         strength = wall_strength(scene, points)
         smooth = (strength.friction == 0) & (strength.cohesion == 0)
         self.normal, self.shear = stiffness[0] * points.area, np.where(smooth, 0.0, stiffness[1] * points.area)
-        self.tension, self.size = strength.tension, scene.size
+        self.tension = strength.tension
+        curves = np.array([closure_curve(each) for each in scene.materials_of_joints])
+        _, self.growth, _, self.end, largest = curves[scene.material_number_of_joint[points.joint]].T
+        self.largest = largest * points.area
+        self.far = np.tile([FAR * scene.size, FAR * scene.size, FAR], len(scene.blocks))[self.free]
         self.dead, self.live = dead_load(scene)[self.free], live_load(scene)[self.free]
         closed = np.concatenate([self.normal, stiffness[1] * points.area])
         self.ground = LOOSE * (self.jump.T @ diags_array(closed) @ self.jump).diagonal()
         self.own, self.pushed = (_virials(scene, each) for each in (scene.dead_forces, scene.live_forces))
         self.virials = _virials_of_joints(scene, points)
 
-    def rest(self, load: float, motion: Array) -> Array | None:
-        """Motion at rest under λ = `load`, sought from another motion; None if none is found that is stable."""
-        leaning = self._leaning(load, motion)
+    def rest(self, share: float, load: float, motion: Array) -> Array | None:
+        """Motion at rest under a share of the dead load and λ = `load`, sought from another motion; None if it falls.
+
+        Raises
+        ------
+        Lost
+            If neither is found.
+        """
+        leaning = self._leaning(share, load, motion)
         for _ in range(ROUNDS):
-            found = self._balanced(load, motion, leaning)
+            found = self._balanced(share * self.dead + load * self.live, motion, leaning)
             if found is None:
                 return None
-            motion, last, leaning = found, leaning, self._leaning(load, found)
+            motion, last, leaning = found, leaning, self._leaning(share, load, found)
             if np.abs(leaning - last).max(initial=0.0) <= SETTLED * np.abs(last).max(initial=0.0):
                 return motion
-        return None
+        raise Lost
 
-    def _balanced(self, load: float, motion: Array, leaning: Array) -> Array | None:
-        """Motion in stable balance by Newton's method, given the moments of each block per rotation."""
-        outer = self.dead + load * self.live
+    def _balanced(self, outer: Array, motion: Array, leaning: Array) -> Array | None:
+        """Motion in stable balance by Newton's method, given loads and the moments of each block per rotation."""
         least = RESIDUAL * float(np.linalg.norm(outer))
         for _ in range(ITERATIONS):
             force, normal = self._forces(motion)
@@ -139,44 +183,53 @@ class _Beds:
             if np.linalg.norm(unbalanced) <= least:
                 return motion if stable else None
             change = (factors if stable else _factors(springs + diags_array(self.ground))).solve(unbalanced)
-            if np.abs(motion + change).max() > self.size:
-                return None
             motion = motion + self._part(outer, leaning, motion, change) * change
-        return None
+            if not (np.abs(motion) <= self.far).all():
+                return None
+        raise Lost
 
     def _part(self, outer: Array, leaning: Array, motion: Array, change: Array) -> float:
-        """Part of a step at which the energy is about lowest: forces out of balance do little work along the step."""
+        """Part of a step at which the energy is about lowest: forces out of balance do little work along the step.
+
+        It is larger than 1 if joints open on the way.
+        """
 
         def work(part: float) -> float:
             tried = motion + part * change
             return float((outer - leaning * tried - self.jump.T @ self._forces(tried)[0]) @ change)
 
-        first, low, high, part = work(0.0), 0.0, 2.0, 1.0
-        for _ in range(HALVINGS):
+        first, low, high, part = work(0.0), 0.0, np.inf, 1.0
+        for _ in range(PARTS):
             left = work(part)
             if abs(left) <= first / 2:
                 break
             low, high = (part, high) if left > 0 else (low, part)
-            part = (low + high) / 2
+            part = min(2 * part, (low + high) / 2)
         return part
 
     def _forces(self, motion: Array) -> tuple[Array, Array]:
         """Normal and shear forces of the points, and their normal stiffness."""
         opening, slip = (self.jump @ motion).reshape(2, -1)
-        pull = self.normal * opening
+        below = np.clip(-opening, 0.0, self.end)  # part of the closure on which the stiffness grows
+        stiffer = self.normal * np.exp(self.growth * below)
+        pressed = (stiffer - self.normal) / self.growth + self.largest * (np.maximum(-opening, 0.0) - below)
+        pull = np.where(opening > 0, self.normal * opening, -pressed)
         force = np.concatenate([np.minimum(pull, self.tension), self.shear * slip])
-        return force, np.where(pull <= self.tension, self.normal, 0.0)
+        return force, np.where(pull <= self.tension, np.where(-opening < self.end, stiffer, self.largest), 0.0)
 
-    def _leaning(self, load: float, motion: Array) -> Array:
-        """Moments of blocks per rotation, on the blocks' freedoms [N m]."""
+    def _leaning(self, share: float, load: float, motion: Array) -> Array:
+        """Moments of blocks per rotation under a share of the dead load and λ, on the blocks' freedoms [N m]."""
         levers = np.zeros((len(self.own), 3))
-        levers[:, 2] = self.virials @ self._forces(motion)[0] + self.own + load * self.pushed
+        levers[:, 2] = self.virials @ self._forces(motion)[0] + share * self.own + load * self.pushed
         return np.asarray(levers.ravel()[self.free])
 
 
 def _factors(stiffness: csr_array) -> SuperLU:
     """Factors of a symmetric matrix without pivoting, whose pivots have the signs of its eigenvalues."""
-    return splu(csc_array(stiffness), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    try:
+        return splu(csc_array(stiffness), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+    except RuntimeError as singular:
+        raise Lost from singular
 
 
 def _virials(scene: Scene, forces: Forces) -> Array:

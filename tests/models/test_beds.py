@@ -4,15 +4,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from runningbond.compare import published_scene
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.limit import limit
 from runningbond.models import MODELS
-from runningbond.models.beds import on_beds
+from runningbond.models.beds import Lost, _climb, on_beds
 from runningbond.models.edges import leaning, rolls
 from runningbond.results import Outcome
-from runningbond.scene import Scene, scene_from_dict
+from runningbond.scene import Array, Scene, scene_from_dict
 from tests.beds import stack_on_beds
 from tests.walls import courses
 
@@ -67,6 +68,113 @@ def test_stack_on_beds(rows: int, stiffness: float) -> None:
     found = on_beds(scene, 1 / rows)
     assert found is not None
     assert found.load == pytest.approx(exact, rel=0.01)
+
+
+def block_on_closing_bed(width: float, height: float, weight: float, curve: tuple[float, float, float]) -> float:
+    """Largest λ of a block on a bed whose stiffness [N/m²] grows, by integration of its pressures."""
+    first, growth, last = curve
+    end = np.log(last / first) / growth
+    along = width * (np.arange(4000) + 0.5) / 4000 - width / 2
+
+    def pressures(middle: float, turn: float) -> Array:
+        closed = np.maximum(middle + turn * along, 0.0)
+        below = np.minimum(closed, end)
+        return np.asarray(first / growth * np.expm1(growth * below) + last * (closed - below)) * width / 4000
+
+    def leans(turn: float) -> float:
+        out = width / 2 * turn
+        middle = brentq(lambda middle: pressures(middle, turn).sum() - weight, -out, out + weight / (first * width))
+        return float(pressures(middle, turn) @ along) / (weight * height / 2) - turn
+
+    return max(leans(turn) for turn in np.geomspace(1e-4, 0.2, 400))
+
+
+@pytest.mark.parametrize("stiffest", [1e8, 1e10])
+def test_closed_bed_is_stiffer(stiffest: float) -> None:
+    """A block of 0.4 × 1 m; on a bed of its first stiffness alone it would bear less."""
+    closure = {"growth": 5000.0, "stiffest": stiffest}
+    joint = {"friction": 2.0, "normal_stiffness": 2e7, "shear_stiffness": 1e9, "closure": closure}
+    scene = courses([[1]], 0.4, 1.0, joint=joint)
+    curve = 2e7 * 0.12, 5000.0, stiffest * 0.12
+    exact = block_on_closing_bed(0.4, 1.0, float(scene.mass[0]) * 9.81, curve)
+    found = on_beds(scene, 0.4)
+    assert found is not None
+    assert found.load == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.parametrize("scale", [0.01, 100.0])
+def test_scaled_wall_leans_alike(scale: float) -> None:
+    """Rotations do not depend on the size of a wall; they were compared with it."""
+
+    def sized(scale: float) -> Scene:
+        joint = {"friction": 0.8, "normal_stiffness": 3e7 / scale, "shear_stiffness": 1.2e7 / scale}
+        return courses([[1]] * 3, 0.5 * scale, 0.5 * scale, joint=joint, block__density=1800.0 / scale)
+
+    one, other = (on_beds(sized(each), 1 / 3) for each in (1.0, scale))
+    assert one is not None
+    assert other is not None
+    assert other.load == pytest.approx(one.load, rel=1e-6)
+    assert other.moved == pytest.approx(scale * one.moved, rel=1e-4)
+
+
+@pytest.mark.parametrize("share", [0.97, 1.03])
+def test_block_on_bed_falls_under_dead_load_above_it(share: float) -> None:
+    """If P h + W h/2 is larger than the stiffness of the closed bed, k t b³/12. There was no answer to that."""
+    width, height, stiffness = 0.5, 2.0, 1e8
+    joint = {"friction": 2.0, "normal_stiffness": stiffness, "shear_stiffness": 1e12}
+    scene = courses([[1]], width, height, joint=joint)
+    above = share * stiffness * 0.12 * width**3 / 12 / height - float(scene.mass[0]) * 9.81 / 2
+    load = {"kind": "line", "from": [0.0, height], "to": [width, height], "force": [0.0, -above / width]}
+    found = on_beds(courses([[1]], width, height, joint=joint, load__dead=[load]), 1e-3)
+    assert (found is not None) == (share > 1)
+    if found is not None:
+        assert found.load == 0
+        assert str(found) == "as it leans it falls under its dead load"
+
+
+def test_wall_that_a_long_step_passes_by_rests() -> None:
+    """Sought from its rest under the dead load alone, it was said to bear 9 % less than 11.4."""
+    size = {"length": 0.9405, "height": 1.284, "block_width": 0.3135, "block_height": 0.321, "thickness": 0.25}
+    above = {"kind": "line", "from": [0.0, 1.284], "to": [0.9405, 1.284], "force": [0.0, -190000.0]}
+    tables = {
+        "wall": size,
+        "block": {"density": 2000.0},
+        "joint": {"friction": 1.0, "normal_stiffness": 1.7e8, "shear_stiffness": 6.8e7},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": [above]},
+    }
+    assert on_beds(scene_from_dict(tables), 11.4) is None
+
+
+@pytest.mark.parametrize(("stiff", "found"), [(1e15, True), (1e18, False)])
+def test_wall_that_is_lost_is_not_said_to_fall(stiff: float, found: bool) -> None:
+    """With a bed 10⁹ times as stiff as the other one, a load near zero was the largest."""
+    joints = {"stiff": {"friction": 2.0, "normal_stiffness": stiff, "shear_stiffness": 0.4 * stiff}}
+    leans = on_beds(on_a_plinth(0.6, 1e9, joints=joints), 0.9 * WIDTH / HEIGHT)
+    assert (leans is not None) == found
+    if leans is not None:
+        assert leans.load == pytest.approx(as_it_leans(0.6, 1e9), rel=0.015)
+
+
+@pytest.mark.parametrize("borne", [0.1, 0.7, 0.999])
+def test_climb_ends_below_the_load_under_which_a_wall_falls(borne: float) -> None:
+    def rest(load: float, motion: Array, step: float = 0.3) -> Array | None:
+        """Under loads up to `borne`, and sought from motions up to a step before them."""
+        return motion + load - motion[0] if load <= min(borne, motion[0] + step) else None
+
+    reached, motion = _climb(rest, 1.0, np.zeros(1))
+    assert reached == motion[0]
+    assert borne - 1 / 128 < reached <= borne
+
+
+def test_climb_is_lost_if_its_shortest_step_is() -> None:
+    def rest(load: float, motion: Array) -> Array:
+        if load > 0.5:
+            raise Lost
+        return motion
+
+    with pytest.raises(Lost):
+        _climb(rest, 1.0, np.zeros(1))
 
 
 def test_mirrored_wall_leans_alike() -> None:
