@@ -39,7 +39,8 @@ def rolls(scene: Scene, outcome: Outcome, tolerance: float) -> str:
         return ""
     told = "joints carry forces only at their ends; pressed along them they roll onto their edges as the wall leans"
     remedy = "a joint.compressive_strength, even one that is never reached, spreads pressures along joints"
-    return f"{told}, and it bears about {number(max(bed, 0.0))}, or less if {less}; {remedy}"
+    borne = f"it bears about {number(bed)}, or less if {less}" if bed > 0 else "it falls under its dead load"
+    return f"{told}, and {borne}; {remedy}"
 
 
 def load_of_beds(scene: Scene, outcome: Outcome) -> float | None:

@@ -130,6 +130,12 @@ def test_block_on_bed_falls_under_dead_load_above_it(share: float) -> None:
     if found is not None:
         assert found.load == 0
         assert str(found) == "as it leans it falls under its dead load"
+    note = rolls(
+        courses([[1]], width, height, joint=joint, load__dead=[load]),
+        Outcome("", "dem-dynamic", "collapse", 0.01),
+        0.01,
+    )
+    assert ("it falls under its dead load" in note) == (share > 1)
 
 
 def test_wall_that_a_long_step_passes_by_rests() -> None:
