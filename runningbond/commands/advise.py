@@ -59,7 +59,7 @@ def _as_json(advice: Advice, outcome: Outcome) -> str:
     answer = {key: value for key, value in outcome.summary().items() if key not in ("dofs", "steps")}
     error, _ = advice.against_experiment()
     measured = {"model_error": None if error is None else error.as_json()}
-    bounds = {"lowest": advice.known.lowest, "bound": advice.known.bound}
+    bounds = {"lowest": advice.lowest, "bound": advice.known.bound}
     return to_json.dumps(
         {**answer, **bounds, **measured, "rungs": [_rung_json(rung) for rung in advice.rungs]}, allow_nan=False
     )

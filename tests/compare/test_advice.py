@@ -25,8 +25,9 @@ from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
 from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS
-from runningbond.models.beds import Leaning
+from runningbond.models.beds import Leaning, along_joints
 from runningbond.models.costs import estimate, pace
+from runningbond.models.edges import leaning
 from runningbond.models.second_opinion import asks_others
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
@@ -737,12 +738,61 @@ def test_tower_of_blocks_bends_in_all_its_joints_as_it_leans(rows: int) -> None:
     assert answer.upper > 0.985 * exact
 
 
-def test_load_of_a_tower_that_leans_is_told_where_finite_displacements_are_refused() -> None:
+def test_tower_that_bears_less_as_it_leans_is_undecided_where_finite_displacements_are_refused() -> None:
+    """It was called a collapse at .125, λ of small displacements, and only the message had the .114 that it bears."""
     scene = courses([[1]], 0.5, 4.0, joint={"friction": 0.8, "cohesion": 10.0} | _springs(1e10))
     advice = advise(scene)
     assert climbed(advice)[-1] == "dem-dynamic, finite"
     assert advice.rungs[-1].outcome is None
-    assert "joints roll onto their edges: as it leans it bears about 0.114" in advice.outcome().message
+    answer = advice.outcome()
+    assert (answer.status, answer.multiplier, answer.lower) == ("undecided", None, None)
+    assert answer.upper == advice.known.bound
+    assert advice.lowest == pytest.approx(0.114, rel=0.01)
+    assert answer.message.startswith("0.1250 at small displacements: forces and a mechanism prove it")
+    assert "joints roll onto their edges: as it leans it bears about 0.114" in answer.message
+    assert "finite displacements need dry joints" in answer.message
+    hard = courses([[1]], 0.5, 4.0, joint={"friction": 0.8, "cohesion": 10.0} | _springs(1e13))
+    assert advise(hard).outcome().status == "collapse"
+
+
+@pytest.mark.parametrize("outcome", [None, Outcome("", "dem-dynamic, finite", "undecided")])
+def test_answer_keeps_no_lower_end_above_what_the_leaning_wall_bears(
+    outcome: Outcome | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last rung refused the wall or found nothing, or the climb was interrupted before it."""
+    monkeypatch.setattr(Knowledge, "on_edges", Leaning(0.3, 0.1))
+    found = known(1.0, (0.5, 0.9), (0.8, 0.81))
+    before = AdviceRung(HISTORY.name, found.outcomes[-1], Step(MODELS["dem-dynamic"], "", finite=True), None, 0.0)
+    last = AdviceRung("dem-dynamic, finite", outcome, Step(None, "another speed changes it"), None, 0.0)
+    for rungs in ([before], [before, last]):
+        answer = Advice(found, rungs).outcome()
+        assert (answer.status, answer.multiplier, answer.lower, answer.upper) == ("undecided", None, None, 0.81)
+        assert answer.message.startswith("0.8000 – 0.8100 at small displacements: ")
+    assert answer.message.endswith("; dem-dynamic, finite: another speed changes it")
+    assert Advice(found, [before, last]).lowest == 0.3
+
+
+def test_edges_of_a_wall_that_was_followed_are_those_of_its_history() -> None:
+    """Forces and a mechanism that are certified, but to which loading did not lead, lose four tenths of λ at once.
+
+    The wall was followed at finite displacements for this. With joints too tough to soften it bears 1.18 there.
+    """
+    rows = [[0.5, 1.0, 1.0, 0.5], [1.0, 1.0, 1.0]] * 2
+    joint = {"friction": 0.975, "cohesion": 1.3e4} | _springs(8e8)
+    scene = courses(rows, 0.2, 0.2, block__density=2400.0, joint=joint)
+    advice = advise(scene, 0.1)
+    found, certified = advice.outcome(), advice.rungs[2].outcome
+    assert (found.status, found.model) == ("collapse", CERTIFICATE.name)
+    assert certified is not None
+    assert found.lower is not None
+    estimated = leaning(scene, certified)
+    assert estimated is not None
+    assert estimated.load < 0.65 * found.lower
+    tough = along_joints(scene).with_joint(fracture_energy_1=1e4, fracture_energy_2=1e5)
+    followed = dem_dynamic(tough, 0.05, displacements="finite", distance=0.2)
+    assert followed.lower is not None
+    assert followed.lower > 0.9 * found.lower
+    assert followed.lower == pytest.approx(1.18, rel=0.01)
 
 
 def _springs(stiffness: float) -> dict[str, float]:

@@ -22,7 +22,7 @@ from runningbond.scene import Scene, SceneError
 from ..table import bracket
 from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
-from .steps import Step, after_refusal, next_step
+from .steps import ROLLS, Step, after_refusal, next_step
 
 TOLERANCE = 0.05  # default of the requested relative width of the bracket
 PUSH_FACTOR = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
@@ -92,18 +92,30 @@ class Advice:
             step = following
 
     def outcome(self) -> Outcome:
-        """The answer: the bracket of the last rung that has one, and its meaning in the message."""
+        """The answer: the bracket of the last rung that has one, and its meaning in the message.
+
+        It has no lower end where the wall, as it leans, bears less by an estimate, and no model has followed it.
+        """
         known, last = self.known, self.rungs[-1]
         answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
         message = known.meaning() or last.next.reason + known.above
-        if known.answer is not None and (last.outcome is None or last.outcome.status != "collapse"):
+        leans, followed = known.on_edges, last.outcome is not None and last.outcome.status == "collapse"
+        if leans is not None:
+            small = bracket(answer) if answer.status == "collapse" else answer.status
+            message = f"{small} at small displacements: {message}; but {ROLLS}: {leans}"
+            answer = replace(answer, status="undecided", multiplier=None, lower=None)
+        if known.answer is not None and not followed:
             finite, large = last.model.endswith("finite"), (known.displacement or 0.0) > known.tolerance
-            if finite:
+            if finite and leans is None:
                 message += "; at small displacements" + (", though they are not small" if large else "")
-            if known.on_edges is not None:
-                message += f"; pressed along their length, joints roll onto their edges: {known.on_edges}"
-            message += f"; {last.model}: {last.next.reason}" if last.outcome is not None or not finite else ""
+            message += f"; {last.model}: {last.next.reason}" if last.outcome is not None or not finite or leans else ""
         return replace(answer, seconds=known.seconds, message=message)
+
+    @property
+    def lowest(self) -> float | None:
+        """Smallest load at which a certificate or a model brought the wall down, or an estimate, as it leans."""
+        least, leans = self.known.lowest, self.known.on_edges
+        return least if least is None or leans is None else min(least, leans.load)
 
     def against_experiment(self) -> tuple[ModelError | None, str]:
         """Measured error of the answer's model and a description; the bound's error if no test covers that model."""

@@ -182,11 +182,12 @@ class Knowledge:
         """How the wall rolls onto the edges of its joints, if it then bears less than the answer by the tolerance.
 
         Either those of the mechanism do, or the wall does not rest on beds of springs that bend everywhere.
-        Joints that soften do so before they roll.
+        Joints that soften do so before they roll. Forces and mechanism are those of a history if one was followed: of
+        certified ones there are many, and loading leads to few of them.
         """
         if self.answer is None or self.evidence == "finite" or self.softens:
             return None
-        found = (leaning(self.scene, each) for each in (self.answer, self.followed) if each is not None)
+        found = (leaning(self.scene, each) for each in (self.followed, self.answer) if each is not None)
         leans, least = next(filter(None, found), None), (1 - self.tolerance) * (self.answer.lower or 0.0)
         if leans is not None and leans.load < least:
             return leans

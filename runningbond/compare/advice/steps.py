@@ -8,6 +8,7 @@ from runningbond.results import Outcome
 from .knowledge import Knowledge, deforms, ladder
 
 DRAWS = 3  # number of histories, of walls that differ in their last bits, if certified loads do not settle the answer
+ROLLS = "pressed along their length, joints roll onto their edges"
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,8 @@ def after_refusal(known: Knowledge, step: Step, refusal: str) -> Step:
         return Step(ladder("bound")[0], f"{reason}; a bound is wanted")
     if step.model.kind == "history" and not step.finite and known.evidence == "certificate":
         return Step(None, f"{refusal}; no history was followed, and the certified loads stay")
-    rest = "the answer at small displacements stays" if step.finite else "no other model answers"
+    stays = step.finite and known.on_edges is None
+    rest = "the answer at small displacements stays" if stays else "no other model answers"
     return Step(None, f"{refusal}; {rest}")
 
 
@@ -140,7 +142,7 @@ def _enough(known: Knowledge, why: str) -> Step:
     leans = known.on_edges
     if leans is not None:
         model = next(model for model in far if deforms(model) == known.soft_on_edges(leans))
-        return Step(model, f"{why}; but pressed along their length, joints roll onto their edges: {leans}", finite=True)
+        return Step(model, f"{why}; but {ROLLS}: {leans}", finite=True)
     moved = known.displacement
     if moved is None:
         return Step(None, f"{why}; displacements are taken to be small")
