@@ -54,21 +54,31 @@ def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
     return csr_array(at_points + turn)
 
 
-def tie_ends(scene: Scene) -> csr_array:
-    """Elongation of ties by motion of their first, then of their second ends, ``(2 nt, 3 nb)``; zero for anchors."""
+def tie_ends(scene: Scene, direction: Array | None = None) -> csr_array:
+    """Elongation of ties by motion of their first, then of their second ends, ``(2 nt, 3 nb)``; zero for anchors.
+
+    In place of elongations, motions along other directions ``(nt, 2)`` if these are given.
+    """
     ties, ends = scene.ties, []
+    direction = ties.direction if direction is None else direction
     for end, sense in enumerate((-1.0, 1.0)):
         held = ties.block[:, end] != ANCHOR
-        along = np.where(held[:, None], sense * ties.direction, 0.0)
+        along = np.where(held[:, None], sense * direction, 0.0)
         block = np.where(held, ties.block[:, end], 0)
         ends.append(point_operator(block, ties.ends[:, end], along, scene.blocks.centroid))
     return csr_array(vstack(ends))
 
 
-def tie_operator(scene: Scene) -> csr_array:
-    """Elongation of each tie, ``(nt, 3 nb)``; an anchor does not move."""
-    ends = tie_ends(scene)
+def tie_operator(scene: Scene, direction: Array | None = None) -> csr_array:
+    """Elongation of each tie, ``(nt, 3 nb)``, or motion of its ends apart as in `tie_ends`; an anchor does not move."""
+    ends = tie_ends(scene, direction)
     return csr_array(ends[: len(scene.ties)] + ends[len(scene.ties) :])
+
+
+def apart_across(scene: Scene) -> csr_array:
+    """Motion of the ends of each tie apart, across its line, ``(nt, 3 nb)``."""
+    x, y = scene.ties.direction.T
+    return tie_operator(scene, np.column_stack([-y, x]))
 
 
 def mass_matrix_diagonal(scene: Scene) -> Array:

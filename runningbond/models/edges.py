@@ -4,9 +4,9 @@ import numpy as np
 
 from runningbond.joints import JointPoints, wall_points, wall_stiffness
 from runningbond.joints.wall_points import listed_points, spreads
-from runningbond.limit.kinematics import live_load
+from runningbond.limit.kinematics import apart_across, live_load
 from runningbond.results import Outcome
-from runningbond.results.mechanism import carried, fastest_corner
+from runningbond.results.mechanism import fastest_corner
 from runningbond.results.outcome import number
 from runningbond.results.reactions import WORKS
 from runningbond.scene import ANCHOR, Array, Scene
@@ -130,13 +130,8 @@ def _virials(scene: Scene, outcome: Outcome, points: JointPoints) -> Array:
 
 def _lengthening(scene: Scene, outcome: Outcome) -> float:
     """Σ T v² / L of ties of pull T and length L, whose ends move apart by v across their line [J]."""
-    ties, ends = scene.ties, []
-    for end in (0, 1):
-        held = ties.block[:, end] != ANCHOR
-        moved = carried(scene.blocks, np.where(held, ties.block[:, end], 0), ties.ends[:, end], outcome.motion)
-        ends.append(np.where(held[:, None], moved, 0.0))
-    (x, y), (u, v) = ties.direction.T, (ends[1] - ends[0]).T
-    return float(outcome.pull.ravel() @ ((x * v - y * u) ** 2 / ties.length))
+    apart = apart_across(scene) @ outcome.motion.ravel()
+    return float(outcome.pull.ravel() @ (apart**2 / scene.ties.length))
 
 
 def _far(outcome: Outcome) -> tuple[Array, Array]:

@@ -219,6 +219,13 @@ def test_collapse_loads_of_histories_are_capped_at_the_bound() -> None:
     assert found.lowest == 0.85
 
 
+def test_lowest_load_of_a_wall_followed_far_is_the_upper_end_of_its_bracket() -> None:
+    """As of other histories. Where blocks vibrated it was the lower end, without what damping takes."""
+    found = known(1.0, (0.8, 0.9))
+    found.learn(MODELS["dem-dynamic"], collapse("dem-dynamic, finite", -0.03, 0.7), finite=True)
+    assert (found.evidence, bracket_of(found), found.lowest) == ("finite", (-0.03, 0.7), 0.7)
+
+
 def test_message_names_a_certified_load_below_the_bracket() -> None:
     """The lowest load is not named if it is a collapse load of the histories, which their bracket contains."""
     certified_lower = known(1.0, (0.5, 0.9), (0.8, 0.81))

@@ -60,6 +60,24 @@ def test_soft_bed_outside_the_mechanism_leans(plinth: float, stiffness: float) -
     assert leans.load > 0.99 * WIDTH / HEIGHT
 
 
+@pytest.mark.parametrize(("share", "rests"), [(0.97, False), (1.03, True)])
+def test_wall_on_a_bed_too_soft_for_its_weight_falls_under_it(share: float, rests: bool) -> None:
+    """As in buckling: its weight turns the wall further than its bed turns it back. The answer of `advise` was .125."""
+    plinth = 0.6
+    low, high = WEIGHT * THICKNESS * plinth * WIDTH, WEIGHT * THICKNESS * WIDTH * HEIGHT
+    enough = (low * WIDTH / 2 + high * (WIDTH + HEIGHT / 2)) / (THICKNESS * plinth**3 / 12)
+    scene = on_a_plinth(plinth, share * enough)
+    found = on_beds(scene, WIDTH / HEIGHT)
+    assert found is not None
+    assert (found.load > 0) == rests
+    assert found.load < 0.05 * WIDTH / HEIGHT
+    assert ("falls under its dead load" in str(found)) != rests
+    known = Knowledge(scene, 0.05)
+    known.learn(MODELS["limit"], limit(scene))
+    assert known.on_edges is not None
+    assert (known.on_edges.load > 0) == rests
+
+
 @pytest.mark.parametrize(("rows", "stiffness"), [(4, 1e9), (8, 1e9), (8, 1e10), (12, 1e9)])
 def test_stack_on_beds(rows: int, stiffness: float) -> None:
     joint = {"friction": 0.8, "normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness}
@@ -198,9 +216,73 @@ def test_walls_on_stiff_joints_rest(name: str, lowest: float) -> None:
 
 
 def test_wall_with_held_motions_or_rigid_joints_is_not_judged() -> None:
-    tie = {"from": [-3.0, 4.5], "to": [0.05, 4.5], "area": 1e-4, "young": 2e11, "yield": 2000.0}
-    assert on_beds(on_a_plinth(0.6, 1e9, tie=[tie]), 0.125) is None
+    joint = {"joint": {"friction": 0.8, "normal_stiffness": 1e8, "shear_stiffness": 4e7}}
+    assert on_beds(courses([[1]] * 8, 0.5, 0.5, **joint), 0.125) is not None
+    assert on_beds(courses([[1]] * 8, 0.5, 0.5, support={"kind": "pinned-corners"}, **joint), 0.125) is None
     assert on_beds(courses([[1]] * 8, 0.5, 0.5), 0.125) is None
+
+
+TIED_AT, FAR = 3.0, 40.0  # height and length of a level tie [m], so long that it stays level
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "pulls", "preload"),  # N per metre that the pier moves where it is tied, and shares of its weight
+    [(1e9, 1e5, 0.0), (1e9, 1e6, 0.0), (1e9, 1e8, 0.0), (1e9, 1e5, 0.05), (1e9, 1e6, 0.1), (1e10, 1e6, 0.05)],
+)
+def test_tied_pier_leans_as_its_bed_and_its_tie_give_way(stiffness: float, pulls: float, preload: float) -> None:
+    """A pier on a bed of springs; the tie at its side yields at a tenth of its weight."""
+    weight, spring = WEIGHT * THICKNESS * WIDTH * HEIGHT, stiffness * THICKNESS
+    bar = {"area": 1e-4, "young": pulls * FAR / 1e-4, "yield": 0.1 * weight, "preload": preload * weight}
+    tables: dict[str, Any] = {
+        "wall": {"outlines": [[[0, 0], [WIDTH, 0], [WIDTH, HEIGHT], [0, HEIGHT]]], "thickness": THICKNESS},
+        "block": {"density": 2000.0},
+        "joint": {"friction": 2.0, "normal_stiffness": stiffness, "shear_stiffness": 1e13},
+        "tie": [{"from": [-FAR, TIED_AT], "to": [0.0, TIED_AT]} | bar],
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+    }
+    scene = scene_from_dict(tables)
+    turned = np.geomspace(1e-6, 0.3, 100_000)
+    closed = spring * WIDTH**3 / 12 * turned
+    cracked = weight * (WIDTH / 2 - np.sqrt(2 * weight / (9 * spring * turned)))
+    righting = np.where(closed < weight * WIDTH / 6, closed, cracked)
+    tied = np.minimum(0.1, preload + pulls * TIED_AT * turned / weight) * weight * TIED_AT
+    exact = float(((righting + tied) / (weight * HEIGHT / 2) - turned).max())
+    yields = (WIDTH / 2 + 0.1 * TIED_AT) / (HEIGHT / 2)
+    assert limit(scene).multiplier == pytest.approx(yields, rel=1e-6)
+    found = on_beds(scene, yields)
+    assert found is not None
+    assert found.load == pytest.approx(exact, rel=0.01)
+    assert found.load < 0.97 * yields
+    assert on_beds(scene, 0.98 * exact) is None
+
+
+def test_ties_between_blocks_turn_with_them() -> None:
+    """Two piers, each on its bed, of which one is pushed and drags the other along by a slanting tie of a few newtons.
+
+    Mirrored, or with the ends of the tie interchanged, they bear the same.
+    """
+    found = []
+    for mirrored in (False, True):
+        sense = -1.0 if mirrored else 1.0
+        piers = [[[x, 0], [x + 0.5, 0], [x + 0.5, 4], [x, 4]] for x in (-1.5, 1.0)]
+        for ends in ([-1.0, 3.5], [1.0, 2.0]), ([1.0, 2.0], [-1.0, 3.5]):
+            first, second = ([sense * x, y] for x, y in ends)
+            tables: dict[str, Any] = {
+                "wall": {"outlines": piers, "thickness": THICKNESS},
+                "block": {"density": 2000.0},
+                "joint": {"friction": 2.0, "normal_stiffness": 1e9, "shear_stiffness": 4e8},
+                "tie": [{"from": first, "to": second, "area": 1e-4, "young": 1e10, "yield": 500.0}],
+                "support": {"kind": "base"},
+                "load": {
+                    "gravity": 9.81,
+                    "live": {"kind": "point", "at": [sense * 1.25, 2.0], "force": [sense, 0.0]},
+                },
+            }
+            leans = on_beds(scene_from_dict(tables), 5000.0)
+            assert leans is not None
+            found.append(leans.load)
+    assert found == pytest.approx(found[:1] * 4, rel=1e-6)
 
 
 def test_load_is_not_advised_as_proved_where_soft_joints_lean() -> None:

@@ -96,7 +96,7 @@ class Knowledge:
                 certified = replace(outcome, upper=max(outcome.upper, self.bound))
             self._answer("certificate", certified, outcome.lower)
         elif finite:
-            self._answer("finite", outcome, outcome.lower)
+            self._answer("finite", outcome, outcome.upper)
         else:
             # If paths with several load steps were followed, `upper` is the highest of their collapse loads.
             falls = [each.upper if each.fall is None else each.fall for each in draws or (outcome,) if each.upper]
