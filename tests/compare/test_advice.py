@@ -224,6 +224,15 @@ def test_lowest_load_of_a_wall_followed_far_is_the_upper_end_of_its_bracket() ->
     found = known(1.0, (0.8, 0.9))
     found.learn(MODELS["dem-dynamic"], collapse("dem-dynamic, finite", -0.03, 0.7), finite=True)
     assert (found.evidence, bracket_of(found), found.lowest) == ("finite", (-0.03, 0.7), 0.7)
+    assert found.meaning() == "; above 1.0000 nothing stands at small displacements"
+
+
+def test_message_of_a_wall_followed_far_names_a_certified_load_below_its_bracket() -> None:
+    """A wall of ten blocks was told to fall at .360, with collapse certified from .255 on only in the JSON object."""
+    found = known(1.0, (0.5, 0.9))
+    found.learn(MODELS["dem-dynamic"], collapse("dem-dynamic, finite", 0.69, 0.7), finite=True)
+    told = "; others may end from 0.5000 on, or lower; above 1.0000 nothing stands at small displacements"
+    assert found.meaning() == told
 
 
 def test_message_names_a_certified_load_below_the_bracket() -> None:

@@ -223,17 +223,19 @@ class Knowledge:
         """Meaning of the bracket of an answer, in words."""
         if self.evidence == "proof":
             return "forces and a mechanism prove it, whether or not sliding joints dilate"
+        least, others = self.lowest, ""
+        if least is not None and least < (answer.lower or 0.0):
+            others = f"; others may end from {number(least)} on, or lower"
         if self.evidence == "finite":
-            return answer.message + (self.above and f"{self.above} at small displacements")
+            small = others + self.above
+            return answer.message + (small and f"{small} at small displacements")
         if self.evidence == "certificate":
             seen = ", and a history agrees" if self.draws else ""
             if answer.upper is None:
                 seen = ", but a history locks: it takes other forces in joints than the load alone brings about"
             return f"{self._certified(answer)}{seen}; smaller ones are not excluded{self.above}"
-        below = "" if self.lowest is None else "; others may end lower"
-        if self.lowest is not None and self.lowest < (answer.lower or 0.0):
-            below = f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
+        below = others or ("" if least is None else "; others may end lower")
         below += "".join(f"; one more is {each.status}: {each.message}" for each in self.others)
         if self.draws == 1 and answer.fall is not None:
             told = "the lowest and the highest of its paths in load steps of several lengths"
