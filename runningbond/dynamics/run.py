@@ -208,7 +208,8 @@ class Run:
         rise
             Increase of the multiplier per step.
         given
-            Energy [J] of the state apart from the work of its loads, as `given` returns it; inf disables energy checks.
+            Energy [J] of the state apart from the work of its loads, as `given` returns it; inf disables the checks
+            that energy is finite and not created.
 
         Raises
         ------
@@ -261,8 +262,8 @@ class Run:
                 load = load + taken * speed * live
             state.steps += taken
             state.time += taken * self.dt
-            if not stable or not math.isfinite(state.external):
-                is_lost = not math.isfinite(state.external)
+            is_lost = given < math.inf and not math.isfinite(state.external)
+            if is_lost or not stable:
                 raise Unstable(state.steps, self.dt, self.safe_step, is_lost=is_lost)
         return total
 
