@@ -25,6 +25,9 @@ UNTOUCHED = 0.7071
 JUMP = 1e-6
 """Opening and slip in a trial [m]."""
 
+TOGETHER = 100
+"""Number of materials in a trial: spare rows of walls whose joints all differ would fill the memory."""
+
 BEYOND = 1e-6
 """Force beyond the strength, relative to all forces and strengths of points, up to which it counts as rounding."""
 
@@ -78,6 +81,12 @@ def _try_kernel(name: str, kernel: Any, rows: int, columns: int, content: bytes)
             "joint.law", f'"{name}" needs a kernel compiled with runningbond.joints.compiled.kernel', kernel
         )
     constants = np.frombuffer(content).reshape(-1, columns).copy()
+    for first in range(0, len(constants), TOGETHER):
+        _try_materials(name, kernel, rows, constants[first : first + TOGETHER])
+
+
+def _try_materials(name: str, kernel: Any, rows: int, constants: Array) -> None:
+    """As `_try_kernel`, of a few materials with constants ``(nm, n_constants)``."""
     moved = [(-JUMP, JUMP), (-JUMP, -JUMP), (JUMP, 0.0), (JUMP, JUMP), (JUMP, -JUMP)]
     jumps = np.array([(0.0, 0.0), (-JUMP, 0.0), *moved])
     for these in (jumps[:2], jumps):  # first those of a wall that is built, and bears itself
@@ -100,7 +109,10 @@ def _try_kernel(name: str, kernel: Any, rows: int, columns: int, content: bytes)
 
 @dataclass(frozen=True, eq=False)
 class CheckedLaw(PointLaw):
-    """A user's law with a tangent, whose responses are checked: they are finite, and within the law's strength."""
+    """A user's law with a tangent, whose responses are checked: they are finite, and within the law's strength.
+
+    Forces that are not finite are left to the search for rest, which does not take them for balance.
+    """
 
     law: PointLaw
     name: str
@@ -115,12 +127,15 @@ class CheckedLaw(PointLaw):
         if [np.shape(each) for each in arrays] != [(count,)] * 3 + [(count, 2, 2)]:
             what = f'"{self.name}" must respond with forces and a plastic slip (np,), and a tangent (np, 2, 2)'
             raise SceneError("joint.law", what)
-        if np.isfinite([opening, slip, plastic_slip]).all():
-            for what, values in zip(("forces", "forces", "a plastic slip", "a tangent"), arrays, strict=True):
-                if not np.isfinite(values).all():
-                    raise SceneError("joint.law", f'"{self.name}" responds with {what} not all finite')
-            size = np.abs(found.normal) + np.abs(found.tangential) + self.strength.strongest
-            if (self.strength.violation(found.normal, found.tangential) > BEYOND * size.max(initial=0.0)).any():
-                what = "responds with forces beyond its cone, on which limit analysis relies; give it a cone of its own"
-                raise SceneError("joint.law", f'"{self.name}" {what}')
+        with np.errstate(over="ignore", invalid="ignore"):  # a search tries jumps at which stiffening laws overflow
+            squares = np.square(found.normal) + np.square(found.tangential)
+        if not np.isfinite([opening, slip, plastic_slip, squares]).all():
+            return found
+        for what, values in ("a plastic slip", found.plastic_slip), ("a tangent", found.tangent):
+            if not np.isfinite(values).all():
+                raise SceneError("joint.law", f'"{self.name}" responds with {what} not all finite')
+        size = np.abs(found.normal) + np.abs(found.tangential) + self.strength.strongest
+        if (self.strength.violation(found.normal, found.tangential) > BEYOND * size.max(initial=0.0)).any():
+            what = "responds with forces beyond its cone, on which limit analysis relies; give it a cone of its own"
+            raise SceneError("joint.law", f'"{self.name}" {what}')
         return found
