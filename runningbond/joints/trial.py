@@ -13,7 +13,7 @@ import numpy as np
 
 from runningbond.scene import Array, JointMaterial, SceneError
 
-from .law import Law
+from .law import COMMON_ROWS, CRUSHING, PLASTIC_CLOSURE, Law
 from .point_law import PointLaw, PointResponse
 
 SPARE_ROWS = 1000
@@ -54,7 +54,9 @@ def constants_of(law: Law, materials: Sequence[JointMaterial]) -> Array:
         what = f'"{law.name}" must have constants that are numbers, k_n above zero, k_t and f_t not below'
         raise SceneError("joint.law", what, found[0])
     if not all(_is_the_packages(given) for given in (law.kernel, law.constants)):
-        _try_kernel(law.name, law.kernel, len(law.history), constants.shape[1], constants.tobytes())
+        named = *COMMON_ROWS, PLASTIC_CLOSURE, CRUSHING, "plastic slip", law.damage
+        read = tuple(row for row, name in enumerate(law.history) if name in named)  # other rows are the law's affair
+        _try_kernel(law.name, law.kernel, len(law.history), read, constants.shape[1], constants.tobytes())
     return constants
 
 
@@ -71,10 +73,11 @@ def _is_the_packages(given: Any) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _try_kernel(name: str, kernel: Any, rows: int, columns: int, content: bytes) -> None:
+def _try_kernel(name: str, kernel: Any, rows: int, read: tuple[int, ...], columns: int, content: bytes) -> None:
     """Call a kernel with small jumps of points without history, of every material; refuse what a wall cannot bear.
 
-    It may raise errors at jumps that a wall may never reach; they are raised again if it does.
+    `read` are the rows of the history that models read. The kernel may raise errors at jumps that a wall may never
+    reach; they are raised again if it does.
     """
     if not hasattr(kernel, "py_func"):
         raise SceneError(
@@ -82,10 +85,10 @@ def _try_kernel(name: str, kernel: Any, rows: int, columns: int, content: bytes)
         )
     constants = np.frombuffer(content).reshape(-1, columns).copy()
     for first in range(0, len(constants), TOGETHER):
-        _try_materials(name, kernel, rows, constants[first : first + TOGETHER])
+        _try_materials(name, kernel, rows, read, constants[first : first + TOGETHER])
 
 
-def _try_materials(name: str, kernel: Any, rows: int, constants: Array) -> None:
+def _try_materials(name: str, kernel: Any, rows: int, read: tuple[int, ...], constants: Array) -> None:
     """As `_try_kernel`, of a few materials with constants ``(nm, n_constants)``."""
     moved = [(-JUMP, JUMP), (-JUMP, -JUMP), (JUMP, 0.0), (JUMP, JUMP), (JUMP, -JUMP)]
     jumps = np.array([(0.0, 0.0), (-JUMP, 0.0), *moved])
@@ -102,7 +105,8 @@ def _try_materials(name: str, kernel: Any, rows: int, constants: Array) -> None:
         if (room[rows:] != UNTOUCHED).any():
             what = f'"{name}" writes to rows of the history that it does not name: it names {rows}'
             raise SceneError("joint.law", what)
-        if not raised and these is not jumps and not (np.isfinite(traction).all() and np.isfinite(room[:rows]).all()):
+        finite = np.isfinite(traction).all() and np.isfinite(room[list(read)]).all()
+        if not raised and these is not jumps and not finite:
             what = f'"{name}" must write finite tractions and histories for points that are closed and have not slid'
             raise SceneError("joint.law", what)
 

@@ -240,6 +240,28 @@ def without_tractions(
     """A kernel that writes nothing."""
 
 
+@kernel
+def with_a_mark(
+    opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array
+) -> None:
+    """Springs that mark points which have never been open by a NaN in a row of their own."""
+    springs(opening, slip, of, history, viscosity, n, t)
+    for i in range(opening.size):
+        if history[4, i] == 0.0 or np.isnan(history[4, i]):
+            history[4, i] = opening[i] if opening[i] > 0.0 else np.nan
+
+
+@pytest.mark.parametrize(("row", "refused"), [("first opening", False), ("plastic slip", True)])
+def test_row_that_no_model_reads_may_be_no_number(row: str, refused: bool) -> None:
+    law = Law("marks", constants_of_springs, with_a_mark, (*COMMON_ROWS, row), stored_in_springs)
+    if refused:
+        with pytest.raises(SceneError, match="must write finite tractions and histories"):
+            rigid_system(tower(law=law))
+    else:
+        rigid_system(tower(law=law))
+        assert "no longer finite" not in dem_dynamic(tower(law=law)).message
+
+
 def test_kernel_that_writes_beyond_its_history_is_refused() -> None:
     """It would write over other memory: the process ended with "double free or corruption", or anywhere else."""
     law = Law("counting", constants_of_springs, of_a_fifth_row, COMMON_ROWS, stored_in_springs)
