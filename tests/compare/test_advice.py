@@ -19,6 +19,7 @@ from runningbond.compare.advice.climb import AdviceRung, together
 from runningbond.compare.advice.experiment import ModelError, error_of, read_errors, write_errors
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.advice.steps import DRAWS, Step, next_step
+from runningbond.joints.coulomb import COULOMB
 from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
@@ -769,6 +770,22 @@ def test_tower_that_bears_less_as_it_leans_is_undecided_where_finite_displacemen
     assert "finite displacements need dry joints" in answer.message
     hard = courses([[1]], 0.5, 4.0, joint={"friction": 0.8, "cohesion": 10.0} | _springs(1e13))
     assert advise(hard).outcome().status == "collapse"
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "finite", "followed"), [(1e9, False, True), (1e12, True, True), (1e12, False, False)]
+)
+def test_wall_that_no_static_model_follows_is_followed_far(stiffness: float, finite: bool, followed: bool) -> None:
+    """With a law without a tangent the climb ended before, undecided or without the displacements requested."""
+    law = replace(COULOMB, name="without a tangent", response=None)
+    rows = [[1.0], [0.5, 0.5]] * 2
+    scene = courses(rows, 0.5, 0.5, joint={"friction": 0.8} | _springs(stiffness)).with_joint(law=law)
+    advice = advise(scene, finite=finite)
+    assert "dem-static" in climbed(advice)
+    assert advice.known.followed is None
+    assert (climbed(advice)[-1] == "dem-dynamic, finite") == followed
+    assert advice.outcome().status == "collapse"
+    assert advice.known.evidence == ("finite" if followed else "certificate")
 
 
 @pytest.mark.parametrize("outcome", [None, Outcome("", "dem-dynamic, finite", "undecided")])

@@ -51,7 +51,7 @@ def after_refusal(known: Knowledge, step: Step, refusal: str) -> Step:
         reason = refusal.removeprefix(f"model {step.model.name}: ")
         return Step(ladder("bound")[0], f"{reason}; a bound is wanted")
     if step.model.kind == "history" and not step.finite and known.evidence == "certificate":
-        return Step(None, f"{refusal}; no history was followed, and the certified loads stay")
+        return _enough(known, f"{refusal}; no history was followed, and the certified loads stay")
     stays = step.finite and known.on_edges is None
     rest = "the answer at small displacements stays" if stays else "no other model answers"
     return Step(None, f"{refusal}; {rest}")
