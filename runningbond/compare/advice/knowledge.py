@@ -187,10 +187,14 @@ class Knowledge:
         """
         if self.answer is None or self.evidence == "finite" or self.softens:
             return None
-        found = (leaning(self.scene, each) for each in (self.followed, self.answer) if each is not None)
-        leans, least = next(filter(None, found), None), (1 - self.tolerance) * (self.answer.lower or 0.0)
-        if leans is not None and leans.load < least:
-            return leans
+        for each in filter(None, (self.followed, self.answer)):
+            leans = leaning(self.scene, each)
+            if leans is None:
+                continue
+            if leans.load < (1 - self.tolerance) * (each.lower or 0.0):  # what is lost of its own load
+                return leans
+            break
+        least = (1 - self.tolerance) * (self.answer.lower or 0.0)
         if least not in self.rested:
             self.rested[least] = on_beds(self.scene, least)
         return self.rested[least]
