@@ -67,16 +67,12 @@ class BeamDrive(Lead):
         """Note on the largest reaction in the other direction of a cyclic drive."""
         return other_way(self.goals, curve)
 
-    @property
-    def _rate(self) -> float | None:
-        return None if self.scene.drive is None else self.scene.drive.rate
-
     def too_fast(self) -> str:
         """Note on a rate whose double, at which the path is also followed, has not two time steps for each row.
 
         Rows have two steps at least: the drive is then slower than that, as slow at both speeds, and they would agree.
         """
-        rate = self._rate
+        rate = self.rate
         most = self.longest / (2 * ROWS * LEAST_WINDOWS * self.run.dt)
         if rate is None or rate <= most:
             return ""
@@ -152,7 +148,7 @@ class BeamDrive(Lead):
                     knock = not self.is_small and k >= RAMP
                     inertia = 0.0 if knock else (self._gathered(state) - gathered) / (state.time - since)
                     spent = self._spent(state) - spent
-                    share = spent / (run.driven(state) - moved) - own if self._rate else 0.0
+                    share = spent / (run.driven(state) - moved) - own if self.rate else 0.0
                     row = len(traverse.rows) + (window > peaks.windows // 2)
                     peaks.see(force, inertia, taken, state, row, spent=share)
                     if window == peaks.windows // 2:
@@ -177,7 +173,7 @@ class BeamDrive(Lead):
 
         Without a rate the speed is halved until the force converges.
         """
-        if self._rate is None:
+        if self.rate is None:
             return 0.0
         return self.run.system.kinetic_energy(state.velocity) + self.run.damped(state)
 

@@ -89,6 +89,11 @@ class Lead(ABC):
         """Least work [J] relative to which friction is judged to matter."""
         return self.least_work
 
+    @property
+    def rate(self) -> float | None:
+        """Speed that is asked for [m/s]; None if it is chosen, and halved until the answer converges."""
+        return None if self.scene.drive is None else self.scene.drive.rate
+
     @cached_property
     def is_small(self) -> bool:
         """Whether displacements are small."""

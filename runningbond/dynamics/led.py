@@ -139,7 +139,7 @@ def _followed(
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
             if traverse.verdict == "undecided" and lead is before:
                 break
-            if _has_converged(lead, traverses, tolerance) and not _rate(scene):
+            if _has_converged(lead, traverses, tolerance) and not lead.rate:
                 break
     except (KeyboardInterrupt, Unstable) as stop:
         hint = ""
@@ -181,16 +181,12 @@ def _lead(wall: LedWall, run: Run, start: State, observe: Observer, distance: fl
     return Push(scene, run, start, criteria, observe, points, distance or side, most, reach)
 
 
-def _rate(scene: Scene) -> float | None:
-    return None if scene.drive is None else scene.drive.rate
-
-
 def _durations(lead: Lead, rest: int) -> list[float]:
     """Durations of the longest leg [s], one per traverse: for twice the rate and the rate, or doubling each time.
 
     The doublings end at the budget.
     """
-    if rate := _rate(lead.scene):
+    if rate := lead.rate:
         return [lead.longest / (2 * rate), lead.longest / rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
     steps = max(LEAST_STEPS, (REST_MULTIPLE if lead.is_small else REST_MULTIPLE_FINITE) * rest)
@@ -317,7 +313,7 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         message = f"no answer: {still}: {number(traverse.answer)}; {what}"
         bounds = (None, most) if falls else (lower, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
-    if spread > tolerance and not _rate(lead.scene):
+    if spread > tolerance and not lead.rate:
         remedy = lead.remedy(traverses[-2], traverse, tolerance)
         why = joined("another speed changes it by more than the tolerance", remedy)
         if traverse.fall is not None:
@@ -362,7 +358,7 @@ def _bounds(outcome: Outcome) -> tuple[float, float]:
 
 def _answer(outcome: Outcome, lead: Lead, traverses: list[Traverse]) -> str:
     """Name of the answer, with how it was obtained and where displacements are read."""
-    what = lead.answer + (", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds")
+    what = lead.answer + (", at its rate and at twice that" if lead.rate else ", at two speeds")
     if len(traverses) > 1 and (apart := lead.apart(*traverses[-2:])):
         what += f", whose curves differ by {100 * apart:.2g} % of it on average, as far as they stay above half of it"
     return joined(what, lead.other_way(outcome.curve), lead.displacements, lead.before(outcome.curve), lead.read_at)
