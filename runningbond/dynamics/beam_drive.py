@@ -89,20 +89,20 @@ class BeamDrive(Lead):
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on a force that depends on how joints slid, or that grows on a longer path, at finite displacements."""
         slid = self.friction_note(traverse, tolerance, BEAM_DIFFERS, until=traverse.largest + 1)
-        told = joined(self._moving(traverse, tolerance), slid)
+        told = joined(self.moving(traverse, tolerance), slid)
         grown = traverse.answer + self._growth_along_slope(traverse)
         if self.is_small or grown <= (1 + tolerance) * traverse.answer:
             return told
         rising = f"still rising at the end, along its slope to {number(grown)} on a path twice as long"
         return joined(told, rising)
 
-    def _moving(self, traverse: Traverse, tolerance: float) -> str:
-        """Note on a rate that is so fast that inertia and damping take a part of the force."""
+    def moving(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on a beam that moves so fast that inertia and damping take a part of the force."""
         taken = traverse.answer - traverse.still
         if taken <= tolerance * traverse.answer:
             return ""
         part = two_digits(100 * taken / traverse.answer)
-        return f"inertia and damping take {part} % of the force at this rate: the wall at rest may bear less by as much"
+        return f"inertia and damping take {part} % of the force at this speed: a wall at rest may bear less by as much"
 
     def _growth_along_slope(self, traverse: Traverse) -> float:
         return 0.0 if traverse.verdict == "collapse" else growth_left(self._unbraked(traverse.curve))
@@ -148,7 +148,7 @@ class BeamDrive(Lead):
                     knock = not self.is_small and k >= RAMP
                     inertia = 0.0 if knock else (self._gathered(state) - gathered) / (state.time - since)
                     spent = self._spent(state) - spent
-                    share = spent / (run.driven(state) - moved) - own if self.rate else 0.0
+                    share = spent / (run.driven(state) - moved) - own
                     row = len(traverse.rows) + (window > peaks.windows // 2)
                     peaks.see(force, inertia, taken, state, row, spent=share)
                     if window == peaks.windows // 2:
@@ -169,12 +169,7 @@ class BeamDrive(Lead):
         return state
 
     def _spent(self, state: State) -> float:
-        """Kinetic energy of all bodies, and what damping has taken of it so far [J]; 0 if no rate is asked for.
-
-        Without a rate the speed is halved until the force converges.
-        """
-        if self.rate is None:
-            return 0.0
+        """Kinetic energy of all bodies, and what damping has taken of it so far [J]."""
         return self.run.system.kinetic_energy(state.velocity) + self.run.damped(state)
 
     def _gathered(self, state: State) -> float:

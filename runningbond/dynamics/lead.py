@@ -168,6 +168,10 @@ class Lead(ABC):
         """Note on an answer that may still change by more than a tolerance although a mechanism counts as formed."""
         return ""
 
+    def moving(self, traverse: Traverse, tolerance: float) -> str:
+        """Note on the part of an answer that motion takes, if it is more than a tolerance; may be empty."""
+        return ""
+
     def friction_note(self, traverse: Traverse, tolerance: float, differs: str, *, until: int | None = None) -> str:
         """The note of `friction_note` for a traverse, from the works of its rows up to number `until` (excluded)."""
         friction = self.run.ledger(traverse.best).friction - self.run.ledger(self.start).friction

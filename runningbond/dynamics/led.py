@@ -159,6 +159,8 @@ def _followed(
     if not lost <= UNACCOUNTED:  # also if the law's energy is no number
         message = f"{lost:.1%} of the work of the loads is unaccounted for"
         return replace(outcome, status="failed", message=message), None
+    # Motion takes more at twice the speed; where it took less, cracks have set free what the last traverse lost.
+    traverse.spent = min(each.spent for each in traverses[-2:])
     outcome = _judge(outcome, lead, traverses, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, crushing_note(run, traverse.best)))
     if outcome.status == "undecided" and outcome.upper is None and lead.moves and wall.is_self_locking():
@@ -211,13 +213,18 @@ def _bracket(traverses: list[Traverse]) -> tuple[float, float]:
     return lower, slow.answer + change + slow.unseen
 
 
-def _still(traverses: list[Traverse]) -> float:
+def _still(lead: Lead, traverses: list[Traverse]) -> float:
     """Least answer of a wall at rest: the last one without what motion takes, minus its change from twice the speed.
 
-    A beam reaches the rate that is asked for, and twice that, on the same way: both answers may contain much inertia.
+    Both answers may contain much inertia: vibrations that begin with the uplift last. If a rate is asked for, the beam
+    reaches it, and twice that, on the same way, so that the whole answer must change little with the speed; if it is
+    chosen, it is enough that what is left without motion does. That fluctuates, so twice its change counts.
     """
     fast, slow = traverses[-2:]
-    return slow.still - abs(fast.still - slow.still)
+    change = abs(fast.answer - slow.answer)
+    if not lead.rate:
+        change = min(change, 2 * abs(fast.still - slow.still))
+    return slow.still - change
 
 
 def _spread(lead: Lead, traverses: list[Traverse]) -> float:
@@ -301,7 +308,7 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         message = joined(COME_FREE, what, lead.doubt(traverse, tolerance))
         return replace(outcome, status="unbounded", message=message)
     spread, left = _spread(lead, traverses), lead.growth_left(traverse)
-    lower = min(least, _still(traverses)) - traverse.drag
+    lower = min(least, _still(lead, traverses)) - traverse.drag
     outcome = replace(outcome, lower=lower, upper=most + left)
     room = (tolerance - spread if spread <= tolerance else tolerance) * max(traverse.answer, lead.least)
     has_formed = left <= room and lead.has_formed(traverse, tolerance, still=traverse.answer - least)
@@ -310,7 +317,7 @@ def _judge(outcome: Outcome, lead: Lead, traverses: list[Traverse], tolerance: f
         still = f"{still} at the displacement asked for, {at}"
         if traverse.answer > lead.most:
             still = f"the wall bears more than {LOCKED:g} times its largest dead load"
-        message = f"no answer: {still}: {number(traverse.answer)}; {what}"
+        message = joined(f"no answer: {still}: {number(traverse.answer)}; {what}", lead.moving(traverse, tolerance))
         bounds = (None, most) if falls else (lower, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if spread > tolerance and not lead.rate:

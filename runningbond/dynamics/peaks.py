@@ -28,7 +28,7 @@ class Peak:
     state: State  # at the end of the middle window
     force: float = 0.0
     inertia: float = 0.0  # the largest of the three
-    spent: float = 0.0  # the largest of the three
+    spent: float = 0.0  # the median of the three: a crack may set much energy free in one of them
     row: int = 1  # row of the path before which the peak occurred
     _last: list[tuple[float, float, float]] = field(default_factory=list)
     _before: State | None = None
@@ -40,7 +40,8 @@ class Peak:
         if middle > self.force:
             self.state = self._before or state.copy()
             self.force, self.row = middle, row
-            _, self.inertia, self.spent = np.max(self._last, axis=0).tolist()
+            self.inertia = max(each[1] for each in self._last)
+            self.spent = sorted(each[2] for each in self._last)[1]
         self._before = state.copy() if force > self.force else None
 
 

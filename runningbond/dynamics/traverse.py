@@ -44,7 +44,7 @@ class Traverse:
     verdict: Verdict = "stable"
     unseen: float = 0.0  # by how much the answer may be larger: means over windows flatten peaks
     inertia: float = 0.0  # by how much smaller, as bodies accelerate; in settlements both are due to loosened friction
-    spent: float = 0.0  # part of the answer whose work becomes kinetic energy or is damped, if a rate was asked for
+    spent: float = 0.0  # part of the answer whose work becomes kinetic energy or is damped, of a driven beam
     drag: float = 0.0  # part of the answer of a push that damping takes
     late_drag: float = 0.0  # largest part of the force that damping takes as a pushed wall loses half of its answer
     crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # permanent closure at the joints' ends there [m]

@@ -815,6 +815,26 @@ def test_bonded_support_pulls_on_wall(model: Any, glue: float, exact: float) -> 
     brackets(outcome, exact, 0.01)
 
 
+def rocking(
+    condition: str,
+    size: tuple[float, float, int],
+    stiffness: float,
+    pressed: tuple[float, float],
+    drive: dict[str, Any],
+) -> tuple[Scene, float]:
+    """A stack of blocks under a driven beam and the force [N] at which it rocks if the displacements are small.
+
+    V h = (F + W/2) b under a level beam that is pressed down by F, (F + W) b/2 under a free one.
+    """
+    (b, h, blocks), (mass, force) = size, pressed
+    wall = {"block_width": b, "block_height": h / blocks, "thickness": 0.25, "courses": [[1]] * blocks}
+    joint = {"normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness, "friction": 2.5}
+    beam = {"height": 0.1, "mass": mass, "condition": condition, "force": [0, -force], "drive": drive | {"at": h}}
+    scene = panel(wall=wall, joint=joint, beam=beam, load__live=None, block__density=1800.0)
+    weight, above = 9.81 * 1800.0 * b * h * 0.25, force + 9.81 * mass
+    return scene, (above + weight / 2 if condition == "level" else (above + weight) / 2) * b / h
+
+
 @pytest.mark.parametrize(
     ("condition", "size", "stiffness", "pressed", "drive"),
     [
@@ -831,20 +851,37 @@ def test_bracket_of_fast_drive_contains_strength_of_wall_at_rest(
     pressed: tuple[float, float],
     drive: tuple[float, float],
 ) -> None:
-    """V h = (F + W/2) b under a level beam that is pressed down by F, (F + W) b/2 under a free one.
+    """The beam reaches its rate and twice that within the same way, on which both forces contained much inertia.
 
-    The beam reaches its rate and twice that within the same way, on which both forces contained much inertia: brackets
-    ended 0.2 to 17 % above the exact force.
+    Brackets ended 0.2 to 17 % above the exact force.
     """
-    (b, h, blocks), (mass, force), (path, rate) = size, pressed, drive
-    wall = {"block_width": b, "block_height": h / blocks, "thickness": 0.25, "courses": [[1]] * blocks}
-    joint = {"normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness, "friction": 2.5}
-    driven = {"displacement": [path, 0], "rate": rate, "at": h}
-    beam = {"height": 0.1, "mass": mass, "condition": condition, "force": [0, -force], "drive": driven}
-    scene = panel(wall=wall, joint=joint, beam=beam, load__live=None, block__density=1800.0)
-    weight, above = 9.81 * 1800.0 * b * h * 0.25, force + 9.81 * mass
-    exact = (above + weight / 2 if condition == "level" else (above + weight) / 2) * b / h
+    path, rate = drive
+    scene, exact = rocking(condition, size, stiffness, pressed, {"displacement": [path, 0], "rate": rate})
     outcome = dem_dynamic(scene, 0.01)
     brackets(outcome, exact, 1.0)
     assert outcome.multiplier is not None
     assert "inertia and damping take" in outcome.message or exact > 0.99 * outcome.multiplier
+
+
+@pytest.mark.parametrize(
+    ("condition", "size", "stiffness", "pressed", "path", "tolerance"),
+    [
+        ("free", (0.902, 1.164, 2), 2.43e10, (0.0, 1288.6), 0.180, 0.3),
+        ("level", (0.604, 1.040, 1), 6.04e9, (0.0, 11199.8), 0.291, 0.3),
+        ("level", (0.755, 2.325, 1), 4.17e10, (0.0, 1168.9), 0.0565, 0.3),
+        ("level", (0.811, 0.855, 1), 2.48e10, (0.0, 49733.3), 0.107, 0.02),
+        ("level", (0.420, 0.430, 4), 3.06e8, (1336.0, 0.0), 0.171, 0.02),
+        ("level", (0.963, 1.993, 1), 7.71e8, (0.0, 22700.5), 0.0784, 0.02),
+    ],
+)
+def test_bracket_of_a_drive_at_a_chosen_speed_contains_strength_of_wall_at_rest(
+    condition: str,
+    size: tuple[float, float, int],
+    stiffness: float,
+    pressed: tuple[float, float],
+    path: float,
+    tolerance: float,
+) -> None:
+    """Vibrations that begin with the uplift raise the force at both speeds: brackets ended 0.1 to 14 % above it."""
+    scene, exact = rocking(condition, size, stiffness, pressed, {"displacement": [path, 0]})
+    brackets(dem_dynamic(scene, tolerance), exact, 1.5 * tolerance)

@@ -78,3 +78,13 @@ def test_windows_of_fewer_than_fifty_steps_are_whole_rows(row: int, resolved: bo
 def test_number_of_windows_may_be_limited() -> None:
     assert seen_by_peaks(np.ones(4), row=2000).windows == 32
     assert seen_by_peaks(np.ones(4), row=2000, most=4).windows == 4
+
+
+def test_energy_that_a_crack_sets_free_in_one_window_is_not_taken_from_the_drive() -> None:
+    """Motion takes 2 in each row, and 500 in the one after the largest force, as a stone splits."""
+    state = State.at_rest(rigid_system(block()))
+    peaks = Peaks(state, 200, 1)
+    for k, (force, spent) in enumerate([(7.0, 2.0), (8.0, 2.0), (9.0, 500.0), (1.0, 2.0)]):
+        for _ in range(peaks.windows):
+            peaks.see(force, 0.0, 200 // peaks.windows, state, k + 1, spent=spent)
+    assert (peaks.longest.force, peaks.longest.spent) == (8.0, 2.0)

@@ -321,6 +321,19 @@ def test_note_on_bending_of_crushed_joints_needs_crushing(load: float, is_crushe
     assert ("crushed joints" in outcome.message) == is_crushed
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("rate", [None, 0.01])
+@pytest.mark.parametrize("name", ["SW.200.1", "SW.200.2"])
+def test_energy_that_splitting_stones_set_free_is_not_taken_from_the_drive(name: str, rate: float | None) -> None:
+    """Where stones split at the peak, damping takes several times the force that drives the wall meanwhile."""
+    tables = _tables(shipped_walls()[name], LADDER["rigid-splitting"].features)
+    tables["beam"]["drive"] |= {} if rate is None else {"rate": rate}
+    outcome = LADDER["rigid-splitting"].model.solve(scene_from_dict(tables), 0.02)
+    assert outcome.lower is not None
+    assert outcome.multiplier is not None
+    assert outcome.lower >= 0.95 * outcome.multiplier
+
+
 def test_unit_in_a_column_head_is_used(tmp_path: Path) -> None:
     heads = HEADS.replace("L [mm]", "L [m]").replace("Ntot [kN]", "Ntot")
     wall = read_folder(write_folder(tmp_path, GRANITE.replace(",1000,", ",1.0,"), heads=heads))[0]
