@@ -44,7 +44,7 @@ def cone_of(law: Law, material: JointMaterial) -> tuple[float, float, float]:
 
 
 def constants_of(law: Law, materials: Sequence[JointMaterial]) -> Array:
-    """Constants of materials under a law, ``(nm, n_constants)``, checked; the kernel is tried with them."""
+    """Constants of materials under a law, ``(nm, n_constants)``, checked."""
     found = [law.constants(material) for material in materials]
     constants = _numbers(found)
     if constants.ndim != 2 or constants.shape[1] < 3:
@@ -53,11 +53,14 @@ def constants_of(law: Law, materials: Sequence[JointMaterial]) -> Array:
     if np.isnan(constants).any() or not ((k_n > 0) & np.isfinite(k_n)).all() or min(*k_t, *tension) < 0:
         what = f'"{law.name}" must have constants that are numbers, k_n above zero, k_t and f_t not below'
         raise SceneError("joint.law", what, found[0])
-    if not all(_is_the_packages(given) for given in (law.kernel, law.constants)):
-        named = *COMMON_ROWS, PLASTIC_CLOSURE, CRUSHING, "plastic slip", law.damage
-        read = tuple(row for row, name in enumerate(law.history) if name in named)  # other rows are the law's affair
-        _try_kernel(law.name, law.kernel, len(law.history), read, constants.shape[1], constants.tobytes())
     return constants
+
+
+def try_kernel(law: Law, constants: Array) -> None:
+    """Call the kernel of a law, with constants ``(nm, n_constants)``; refuse one that would write over other memory."""
+    named = *COMMON_ROWS, PLASTIC_CLOSURE, CRUSHING, "plastic slip", law.damage
+    read = tuple(row for row, name in enumerate(law.history) if name in named)  # other rows are the law's affair
+    _try_kernel(law.name, law.kernel, len(law.history), read, constants.shape[1], constants.tobytes())
 
 
 def _numbers(found: Any) -> Array:
@@ -65,11 +68,6 @@ def _numbers(found: Any) -> Array:
     with suppress(TypeError, ValueError):
         return np.array(found, dtype=float)
     return np.zeros(0)
-
-
-def _is_the_packages(given: Any) -> bool:
-    module = str(getattr(getattr(given, "py_func", given), "__module__", ""))
-    return module.startswith(f"{__package__}.")
 
 
 @lru_cache(maxsize=64)

@@ -11,10 +11,13 @@ from .coulomb import COULOMB, IMPACTS
 from .interface import INTERFACE
 from .law import KernelLaw, Law
 from .softening import SOFTENING
-from .trial import constants_of
+from .trial import constants_of, try_kernel
 
 SEATED = replace(INTERFACE, name=SOFTENING.name)
 """Softening with a plastic closure; for materials that neither crush nor close the tractions are the same."""
+
+OWN = (COULOMB, IMPACTS, SOFTENING, SEATED, INTERFACE)
+"""Laws whose kernels need no trial; a copy of one with a changed field is a user's law."""
 
 PER_MATERIAL = 4
 """Number of joints per material from which on joints are grouped by material."""
@@ -89,4 +92,6 @@ def kernel_law(materials: Sequence[JointMaterial], of_point: Indices, law: Law |
     start = np.flatnonzero(np.diff(of_point, prepend=-1))
     segments = np.append(start, len(of_point)).astype(np.uint64)
     constants = constants_of(law, materials)
+    if not any(law is own for own in OWN):
+        try_kernel(law, constants)
     return KernelLaw(law, segments, np.ascontiguousarray(constants[of_point[start]]))

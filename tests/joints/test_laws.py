@@ -23,6 +23,7 @@ from runningbond.dynamics.central_differences import step
 from runningbond.joints import KernelLaw, Law, PointLaw, PointResponse, joint_stiffness
 from runningbond.joints.compiled import kernel
 from runningbond.joints.coulomb import COULOMB
+from runningbond.joints.interface import INTERFACE
 from runningbond.joints.law import (
     COMMON_ROWS,
     CRUSHING,
@@ -33,7 +34,7 @@ from runningbond.joints.law import (
     Parameters,
 )
 from runningbond.joints.softening import SOFTENING
-from runningbond.joints.trial import constants_of
+from runningbond.joints.trial import constants_of, try_kernel
 from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, JointMaterial, Scene, SceneError, Stiffness
 from tests.walls import courses
@@ -270,6 +271,13 @@ def test_kernel_that_writes_beyond_its_history_is_refused() -> None:
     rigid_system(tower(law=replace(law, history=(*COMMON_ROWS, "evaluations"))))
 
 
+@pytest.mark.parametrize("changed", [{"history": COMMON_ROWS}, {"kernel": INTERFACE.kernel}])
+def test_copy_of_a_law_whose_kernel_writes_beyond_its_history_is_refused(changed: dict[str, object]) -> None:
+    """The process ended with "munmap_chunk(): invalid pointer", or with a segmentation fault."""
+    with pytest.raises(SceneError, match="writes to rows of the history"):
+        rigid_system(tower(law=Law(**{**vars(COULOMB), **changed})))
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -385,9 +393,10 @@ def test_trial_of_many_materials_needs_little_memory() -> None:
     """Spare rows of all materials at once took 700 MB for a wall with 10 000 of them."""
     materials = [replace(tower().joint_materials[0], friction=0.6 + 1e-5 * number) for number in range(2000)]
     law = replace(SPRINGS, name="many springs")
-    constants_of(law, materials[:1])
+    constants = constants_of(law, materials)
+    try_kernel(law, constants[:1])
     tracemalloc.start()
-    constants_of(law, materials)
+    try_kernel(law, constants)
     largest = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert largest < 3e7
