@@ -2,6 +2,7 @@
 
 import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -22,7 +23,7 @@ from .run import run
 from .schema import schema
 from .show import show
 from .studies import stability, study
-from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions, say
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions, listen, say
 from .validate import validate
 
 app = App(
@@ -46,6 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if not signals:
             raise
         code = _stopped()  # within an import or a callback, libraries turn the KeyboardInterrupt into another error
+    listen(signal.SIG_DFL)  # nothing is left but to end idle workers: an exception raised meanwhile would be lost
     sys.exit(code)
 
 

@@ -222,9 +222,11 @@ def interruptions(model: Model | None = None) -> list[int]:
                 os.write(2, told.encode())  # print is not reentrant, and a signal may arrive during a print
         raise KeyboardInterrupt
 
-    def listen(handler: Callable[[int, object], None] | signal.Handlers) -> None:
-        for number in INTERRUPTIONS:
-            signal.signal(number, handler)
-
     listen(stop if model is None or model.interruptible else signal.SIG_DFL)
     return signals
+
+
+def listen(handler: Callable[[int, object], None] | signal.Handlers) -> None:
+    """Set the handler of interruptions."""
+    for number in INTERRUPTIONS:
+        signal.signal(number, handler)

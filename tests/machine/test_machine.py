@@ -254,6 +254,26 @@ main()
     assert time.monotonic() - start < 20
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interruption_after_the_end_of_a_command_is_not_lost(number: signal.Signals) -> None:
+    """While idle workers end, for a second: the exit code was once 0, and loops in a shell went on."""
+    program = f"""
+import atexit, os, time
+import runningbond.commands.command_line as line
+from runningbond.__main__ import main
+
+def end():
+    os.kill(os.getpid(), {int(number)})
+    time.sleep(1)
+
+atexit.register(end)
+line.app = lambda tokens, **_: print("done")
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (-number, "done\n", "")
+
+
 @pytest.mark.parametrize("module", ["runningbond.commands.command_line", "numpy", "runningbond.commands.validate"])
 def test_ctrl_c_during_import_gives_no_traceback(module: str) -> None:
     program = f"""
