@@ -1,7 +1,7 @@
 for (const group of document.querySelectorAll(".moments")) {
   const slider = group.querySelector("input"), shown = [];
   const show = () => shown.forEach(place => place(slider.value / slider.max));
-  group.querySelectorAll("[data-motion]").forEach(async figure => {
+  Promise.all([...group.querySelectorAll("[data-motion]")].map(async figure => {
     const { of, motion, unit, said, colours } = figure.dataset, words = said.split("|"), count = words.length;
     const packed = Uint8Array.from(atob(motion), letter => letter.charCodeAt(0));
     const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -25,6 +25,5 @@ for (const group of document.querySelectorAll(".moments")) {
       figure.querySelector("output").value = words[k];
     });
     shown.at(-1)(slider.value / slider.max);
-  });
-  slider.addEventListener("input", show), group.hidden = false;
+  })).then(() => { slider.addEventListener("input", show), group.hidden = false; });
 }
