@@ -2,6 +2,8 @@
 
 import time
 
+import numpy as np
+
 import runningbond as rb
 from runningbond.models import Model
 from runningbond.results import Outcome
@@ -11,12 +13,17 @@ from runningbond.scene import Scene, SceneError
 def monolith(scene: Scene, tolerance: float = 0.01) -> Outcome:
     """Collapse of a wall under lateral load if its joints hold it together: an upper bound of the collapse load."""
     start = time.perf_counter()
-    if scene.joint.cohesion > 0:
-        raise SceneError("model monolith", "has no answer for this scene: it needs dry joints, joint.cohesion = 0")
+    joint, *others = scene.materials_of_joints
+    weight, live, dead = float(np.hypot(*scene.load.gravity)), scene.live_forces, scene.dead_forces
+    sideways = live.on_mass_alone and np.allclose(live.acceleration, [weight, 0.0])
+    if not sideways or not dead.on_mass_alone or not np.allclose(dead.acceleration, [0.0, -weight]):
+        raise SceneError("model monolith", "has no answer for this scene: it needs a lateral load to the right alone")
+    if others or joint.cohesion > 0 or len(scene.pins):
+        raise SceneError("model monolith", "has no answer for this scene: it needs dry joints of one material, no pins")
     free = ~scene.fixed
     (_, low), (right, _) = scene.blocks.extent(free)
     x, y = scene.mass[free] @ scene.blocks.centroid[free] / scene.mass[free].sum()
-    topples, slides = (right - x) / (y - low), scene.joint.friction
+    topples, slides = (right - x) / (y - low), joint.friction
     multiplier = float(min(topples, slides))
     message = "topples" if topples < slides else "slides"
     seconds = time.perf_counter() - start

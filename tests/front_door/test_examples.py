@@ -67,8 +67,16 @@ def test_monolith_is_an_upper_bound_of_limit_analysis() -> None:
         whole = wall.run(model)
         assert whole.model == "monolith"
         assert bracket(wall.run("limit"))[1] <= bracket(whole)[1] * (1 + 1e-6)
-    with pytest.raises(rb.SceneError, match="dry joints"):
-        rb.read("panel-01").with_({"joint.cohesion": 10.0}).run(model)
+    point = {"kind": "point", "at": [0.24, 0.72], "force": [0.0, -1000.0]}
+    for change, said in [
+        ({"joint.cohesion": 10.0}, "dry joints"),
+        ({"support.kind": "corners"}, "no pins"),
+        ({"load.live": point}, "a lateral load to the right alone"),
+        ({"load.live": {"kind": "lateral", "direction": "left"}}, "to the right alone"),
+        ({"load.dead": [point]}, "to the right alone"),
+    ]:
+        with pytest.raises(rb.SceneError, match=said):
+            rb.read("panel-01").with_(change).run(model)
 
 
 def test_water_pressure_uses_the_thickness_of_the_blocks() -> None:
