@@ -9,7 +9,7 @@ import runningbond as rb
 from runningbond.joints import Law, joint_stiffness
 from runningbond.joints.compiled import kernel
 from runningbond.joints.law import COMMON_ROWS
-from runningbond.scene import Array, JointMaterial
+from runningbond.scene import Array, JointMaterial, Mask
 
 POLISHED, DISTANCE = 0.5, 1e-4  # residual share of the friction, and slip [m] over which the friction decays
 WORK, VISCOUS_WORK, OPENING, SLIP, PLASTIC, POLISH = range(6)  # rows of the history
@@ -51,7 +51,13 @@ def stored(points: Any, opening: Array, normal: Array, shear: Array) -> Array:
     return np.asarray(normal**2 / (2 * points.normal_stiffness) + shear**2 / (2 * points.shear_stiffness))
 
 
-LAW = Law("polished friction", constants, polish, (*COMMON_ROWS, "plastic slip", "polish"), stored)
+def weakens(constants: Array) -> Mask:
+    """Joints that lose strength: all of them. Models that cannot include this say so."""
+    return np.full(len(constants), POLISHED < 1)
+
+
+HISTORY = (*COMMON_ROWS, "plastic slip", "polish")
+LAW = Law("polished friction", constants, polish, HISTORY, stored, weakens=weakens)
 
 if __name__ == "__main__":
     wall = rb.read("wall-w2")

@@ -1,6 +1,6 @@
 """Joint points and the Mohr–Coulomb joint: the only place that defines its signs."""
 
-from .law import KernelLaw, Law
+from .law import KernelLaw, Law, loses_strength
 from .mohr_coulomb import PointStrength, point_strength
 from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
@@ -36,6 +36,7 @@ __all__ = [
     "joint_stiffness",
     "listed_points",
     "lobatto",
+    "loses_strength",
     "point_strength",
     "static_law",
     "stiffness_note",

@@ -4,6 +4,7 @@ Kernels work with tractions and jumps only; the area of a point is a weight that
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -101,11 +102,30 @@ class Law:
         functions = (kernel, self.constants, self.stored, self.cone, self.response, self.closed, self.weakens)
         return self.name, self.history, self.damage, self.stiffest, *map(identity_of, functions)
 
+    def loses_strength(self, constants: Array) -> bool:
+        """Whether any point of materials with the constants ``(ns, n_constants)`` may lose strength."""
+        return self.damage is not None if self.weakens is None else bool(np.any(self.weakens(constants)))
+
     def row(self, name: str) -> int:
         """Number of a history row; raises a `SceneError` that names the law if it has no such row."""
         if name not in self.history:
             raise SceneError("joint.law", f'"{self.name}" keeps no "{name}" in its history, which this model needs')
         return self.history.index(name)
+
+
+def loses_strength(material: JointMaterial) -> bool:
+    """Whether a joint may lose strength: it softens, or has a law of its own that weakens.
+
+    Without stiffness a material has no constants, from which a law may tell that it does not weaken.
+    """
+    law = material.law
+    if material.softens or not isinstance(law, Law):
+        return material.softens
+    if law.weakens is None:
+        return law.damage is not None
+    with suppress(SceneError):
+        return law.loses_strength(np.array([law.constants(material)], dtype=np.float64))
+    return True
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,8 +196,7 @@ class KernelLaw:
     @property
     def can_break(self) -> bool:
         """Whether any point may lose strength, so that it may fail under a load that it carried before."""
-        weakens = self.law.weakens
-        return self.law.damage is not None if weakens is None else bool(weakens(self.constants).any())
+        return self.law.loses_strength(self.constants)
 
     def normal_tangent(self, pressure: Array) -> Array:
         """Tangent normal stiffness [Pa/m] of closed points under a pressure ``(np,)`` [Pa], not negative."""

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from runningbond.joints import loses_strength
 from runningbond.limit import elastic_displacement
 from runningbond.results import Outcome
 from runningbond.results.outcome import joined, two_digits
@@ -90,7 +91,7 @@ def keeps_strength(model: Model, scene: Scene) -> str:
     """Note for joints that lose strength, if the model does not include this; else empty."""
     joints = scene.materials_of_joints
     loses = {
-        "joint.fracture_energy_1": any(each.softens for each in joints),
+        "joint.fracture_energy_1": any(map(loses_strength, joints)),
         "joint.compressive_fracture_energy": any(each.compressive_fracture_energy is not None for each in joints),
     }
     kept = any(lost and key not in model.reads for key, lost in loses.items())

@@ -18,21 +18,22 @@ from runningbond.compare.advice import TOLERANCE, Advice, advise, experiment
 from runningbond.compare.advice.climb import AdviceRung, together
 from runningbond.compare.advice.experiment import ModelError, error_of, read_errors, write_errors
 from runningbond.compare.advice.knowledge import Knowledge
-from runningbond.compare.advice.steps import DRAWS, Step, next_step
+from runningbond.compare.advice.steps import DRAWS, Step, after_refusal, next_step
 from runningbond.joints.coulomb import COULOMB
+from runningbond.joints.softening import SOFTENING, softening_constants
 from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
 from runningbond.limit.kinematics import sliding_dilates
-from runningbond.models import MODELS
+from runningbond.models import MODELS, run_model
 from runningbond.models.beds import Leaning, along_joints
 from runningbond.models.costs import estimate, pace
 from runningbond.models.edges import leaning
 from runningbond.models.second_opinion import asks_others
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness, scene_from_dict
+from runningbond.scene import Closure, JointMaterial, Scene, SceneError, Settlement, Stiffness, scene_from_dict
 from tests.at_length import at_length
 from tests.beds import stack_on_beds
 from tests.walls import content, courses, panel, write_toml
@@ -781,11 +782,39 @@ def test_wall_that_no_static_model_follows_is_followed_far(stiffness: float, fin
     rows = [[1.0], [0.5, 0.5]] * 2
     scene = courses(rows, 0.5, 0.5, joint={"friction": 0.8} | _springs(stiffness)).with_joint(law=law)
     advice = advise(scene, finite=finite)
-    assert "dem-static" in climbed(advice)
-    assert advice.known.followed is None
-    assert (climbed(advice)[-1] == "dem-dynamic, finite") == followed
+    beyond = ["dem-static", "dem-dynamic", *["dem-dynamic, finite"] * followed]
+    assert climbed(advice) == ["homog", "limit", "limit-nonassociated", *beyond]
+    assert advice.known.followed is not None
     assert advice.outcome().status == "collapse"
     assert advice.known.evidence == ("finite" if followed else "certificate")
+
+
+def test_certified_loads_stay_if_every_model_of_a_history_refuses_the_wall() -> None:
+    found = known(1.0, (0.5, 0.9))
+    following = after_refusal(found, Step(found.histories[-1], ""), "refused")
+    assert following.model is None or following.finite
+    assert following.reason.startswith("refused; no history was followed, and the certified loads stay")
+
+
+@pytest.mark.parametrize("rows", [[[1.0]] * 4, [[1.0] * 3, [0.5, 1.0, 1.0, 0.5]] * 2])
+def test_strength_that_a_law_of_the_user_loses_is_proved_by_no_model_that_keeps_it(rows: list[list[float]]) -> None:
+    """The full strength was called a proof, or certified, at 1.7 to 1.9 times the load of the same bond by its keys."""
+    joint = {"friction": 0.7, "cohesion": 1e5, "tensile_strength": 5e4} | _springs(1e10)
+    energies: dict[str, Any] = {"fracture_energy_1": 2.0, "fracture_energy_2": 20.0}
+
+    def constants(material: JointMaterial) -> tuple[float, ...]:
+        return softening_constants(replace(material, law=None, **energies))
+
+    law = replace(SOFTENING, name="bond", constants=constants)
+    scene = courses(rows, 0.5, 0.25, joint=joint)
+    own, keys = (advise(scene.with_joint(**given)) for given in ({"law": law}, energies))
+    assert climbed(own) == climbed(keys) == ["homog", "limit", "dem-dynamic"]
+    assert (own.outcome().lower, own.outcome().upper) == (keys.outcome().lower, keys.outcome().upper)
+    assert (own.known.bound or 0.0) > 1.5 * (own.outcome().upper or 0.0)
+    for name in ("limit", "limit-nonassociated", "dem-static"):
+        assert "keep the strength that they lose" in run_model(name, scene.with_joint(law=law)).message
+    kept = replace(law, name="tough bond", weakens=lambda found: np.zeros(len(found), dtype=bool))
+    assert "keep the strength" not in run_model("limit", scene.with_joint(law=kept)).message
 
 
 @pytest.mark.parametrize("outcome", [None, Outcome("", "dem-dynamic, finite", "undecided")])

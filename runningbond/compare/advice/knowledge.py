@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from runningbond.dynamics.collapse import BENDS_AT_POINTS
+from runningbond.joints import loses_strength
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.kinematics import sliding_dilates
@@ -68,7 +69,8 @@ class Knowledge:
         self.cracks = cracks_anywhere(self.scene)
         materials = self.scene.materials_of_joints
         self.frictionless = not any(each.friction for each in materials)
-        self.softens = any(each.softens for each in materials)
+        weakening = [each for each in materials if loses_strength(each)]
+        self.weakens, self.bonds_break = bool(weakening), any(each.is_bonded for each in weakening)
         self.crushes = any(each.compressive_strength is not None for each in materials)
         self.gives_way = any(each.compressive_fracture_energy is not None for each in materials)
         self.closes = any(each.closure is not None for each in materials)
@@ -85,7 +87,7 @@ class Knowledge:
             return
         if model.kind == "bound":
             self.bound = outcome.upper
-            weakens = self.softens or self.gives_way or self.cracks
+            weakens = self.weakens or self.gives_way or self.cracks
             # The wall is in equilibrium without live load, and collapses under any live load.
             nothing = outcome.upper <= 0
             if not weakens and (nothing or self.frictionless or self._is_only_load(outcome)):
@@ -182,10 +184,10 @@ class Knowledge:
         """How the wall rolls onto the edges of its joints, if it then bears less than the answer by the tolerance.
 
         Either those of the mechanism do, or the wall does not rest on beds of springs that bend everywhere.
-        Joints that soften do so before they roll. Forces and mechanism are those of a history if one was followed: of
+        Bonds that break do so before they roll. Forces and mechanism are those of a history if one was followed: of
         certified ones there are many, and loading leads to few of them.
         """
-        if self.answer is None or self.evidence == "finite" or self.softens:
+        if self.answer is None or self.evidence == "finite" or self.bonds_break:
             return None
         for each in filter(None, (self.followed, self.answer)):
             leans = leaning(self.scene, each)

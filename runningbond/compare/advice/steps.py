@@ -50,6 +50,10 @@ def after_refusal(known: Knowledge, step: Step, refusal: str) -> Step:
     if step.model.kind == "estimate":
         reason = refusal.removeprefix(f"model {step.model.name}: ")
         return Step(ladder("bound")[0], f"{reason}; a bound is wanted")
+    histories = known.histories
+    onward = histories[histories.index(step.model) + 1 :] if step.model in histories and not step.finite else []
+    if onward and (known.soft or not deforms(onward[0])):
+        return Step(onward[0], refusal, draws=1 if deforms(onward[0]) else step.draws)
     if step.model.kind == "history" and not step.finite and known.evidence == "certificate":
         return _enough(known, f"{refusal}; no history was followed, and the certified loads stay")
     stays = step.finite and known.on_edges is None
@@ -63,7 +67,7 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
     if known.cracks:
         model = next(model for model in histories if "cracks" in model.parameters)
         return Step(model, f"{bound}; blocks may crack elsewhere than on their axes, as only {model.name} models it")
-    if known.softens:
+    if known.weakens:
         softening = [model for model in histories if "joint.fracture_energy_1" in model.reads]
         others = [model.name for model in (*ladder("certificate"), *ladder("history")) if model not in softening]
         reason = f"joints soften, which {' and '.join(others)} do not take into account"
