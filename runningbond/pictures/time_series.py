@@ -65,7 +65,8 @@ class TimeSeries:
         self._farthest = max(self._farthest, float(np.hypot(*moved.T[:2]).max()))
         self._next += 1
         dropped = [self._nearest()] if len(self._frames) > MAX_FRAMES else []
-        for number in dropped:
+        lost = [number for number in self._frames if not all(self._file(kind, number).exists() for kind in KINDS)]
+        for number in {*dropped, *lost}:  # frames are lost if the folder is deleted during a run
             del self._frames[number]
         times = times_shown(list(self._frames.values()))
         for kind in KINDS:

@@ -1,5 +1,6 @@
 """Stored scenes, files for ParaView, joint states, and the recording of runs."""
 
+import shutil
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import replace
@@ -225,6 +226,20 @@ def test_interrupted_series_stays_readable(tmp_path: Path, monkeypatch: pytest.M
         assert len(found) == written.count(f"{kind}.pvd")
         for path in found:
             assert read_grid(path).GetNumberOfCells() > 0
+
+
+def test_series_whose_folder_is_deleted_lists_only_frames_that_are_there(tmp_path: Path) -> None:
+    """ParaView refused the series, which listed the frames written before, too."""
+    scene, folder = panel(), tmp_path / "out"
+    series = TimeSeries(Discretisation.of_rigid_blocks(scene), folder)
+    for seed in range(2):
+        series.add(moved(scene, seed))
+    shutil.rmtree(folder)
+    for seed in range(2, 5):
+        series.add(moved(scene, seed))
+    for kind in ("blocks", "joints"):
+        assert [path.name for path in frame_files(folder, kind)] == [f"{kind}-{k:04d}.vtu" for k in (2, 3, 4)]
+    assert len(series) == 3
 
 
 def test_pyvista_reads_all_frames_of_series(tmp_path: Path) -> None:
