@@ -1,6 +1,6 @@
 """Joint points and the Mohr–Coulomb joint: the only place that defines its signs."""
 
-from .law import KernelLaw, Law, loses_strength
+from .law import KernelLaw, Law, loses_strength, unread_keys
 from .mohr_coulomb import PointStrength, point_strength
 from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
@@ -40,6 +40,7 @@ __all__ = [
     "point_strength",
     "static_law",
     "stiffness_note",
+    "unread_keys",
     "wall_caps",
     "wall_cones",
     "wall_inset",

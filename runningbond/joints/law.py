@@ -128,6 +128,49 @@ def loses_strength(material: JointMaterial) -> bool:
     return True
 
 
+KERNEL_KEYS = (
+    "friction",
+    "cohesion",
+    "tensile_strength",
+    "fracture_energy_1",
+    "fracture_energy_2",
+    "softening",
+    "compressive_strength",
+    "compressive_fracture_energy",
+    "cap_shear",
+    "peak_closure",
+    "closure",
+)
+"""Keys of a material that a kernel knows only from its constants, and limit analysis, the first three, from a cone."""
+
+
+class _Watched(JointMaterial):
+    """A material that notes in `seen` which of its attributes are looked at."""
+
+    seen: set[str]
+
+    def __getattribute__(self, name: str) -> Any:
+        object.__getattribute__(self, "seen").add(name)
+        return object.__getattribute__(self, name)
+
+
+def unread_keys(material: JointMaterial, *, static: bool) -> set[str]:
+    """Keys of a material that its own law does not look at, for its cone if `static`, else for its constants."""
+    law = material.law
+    if not isinstance(law, Law):
+        return set()
+    watched = object.__new__(_Watched)
+    object.__setattr__(watched, "seen", set())
+    for name, value in vars(material).items():
+        object.__setattr__(watched, name, value)
+    keys, numbers = (KERNEL_KEYS[:3], law.cone) if static else (KERNEL_KEYS, law.constants)
+    try:
+        numbers(watched)
+    except Exception:  # the model that takes these numbers says what is wrong with them
+        return set()
+    return set(keys) - watched.seen
+
+
 @dataclass(frozen=True, eq=False)
 class KernelLaw:
     """A law for all joint points of a wall, as the integrator uses it.

@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
+from runningbond.joints import unread_keys
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.results import Outcome
 from runningbond.scene import JointMaterial, Mortar, Scene, SceneError, check_scene, table_of
@@ -100,6 +101,15 @@ class Model:
             if key not in self.takes:
                 raise SceneError(key, f"is not supported by model {self.name}; take another model, or leave it out")
 
+    def unread_by_law(self, scene: Scene) -> list[str]:
+        """Keys of joints that this model reads, but the user's law of these joints does not."""
+        unread = []
+        for material in scene.materials_of_joints if "joint.law" in self.reads else ():
+            keys = unread_keys(material, static="joint.fracture_energy_1" not in self.reads)
+            given = [key for key in _given_keys(material) if key in keys and f"joint.{key}" in self.reads]
+            unread += [f"{table_of(material)}.{key}" for key in given]
+        return list(dict.fromkeys(unread))
+
     def unread(self, scene: Scene, *, finite: bool = False) -> list[str]:
         """Keys of the scene file that are given and that this model does not take into account.
 
@@ -112,6 +122,7 @@ class Model:
                 read = material.name != "inner_joint" or "inner_joint" in self.reads
                 given = [key for key in _given_keys(material) if not (read and f"{kind}.{key}" in self.reads)]
                 unread += [f"{table_of(material)}.{key}" for key in given]
+        unread += self.unread_by_law(scene)
         unread = list(dict.fromkeys(unread))  # contacts of corners have materials of the same name
         if scene.beam is not None and scene.beam.force_line != "moving" and not finite:
             unread.append("beam.force_line")

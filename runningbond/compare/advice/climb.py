@@ -12,7 +12,7 @@ import numpy as np
 
 from runningbond.draws import Scatter
 from runningbond.joints.wall_points import spreads
-from runningbond.models import check_tolerance, run_model
+from runningbond.models import MODELS, check_tolerance, run_model
 from runningbond.models.beds import along_joints
 from runningbond.models.costs import Estimate, short_search, tolerance_of_draws
 from runningbond.results import Outcome
@@ -109,6 +109,9 @@ class Advice:
             if finite and leans is None:
                 message += "; at small displacements" + (", though they are not small" if large else "")
             message += f"; {last.model}: {last.next.reason}" if last.outcome is not None or not finite or leans else ""
+        model = MODELS.get(answer.model.split(",")[0])
+        ignored = model.unread_by_law(known.scene) if model is not None and known.answer is not None else []
+        message += f"; not taken into account: {', '.join(ignored)}" if ignored else ""
         return replace(answer, seconds=known.seconds, message=message)
 
     @property
