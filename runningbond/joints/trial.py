@@ -1,6 +1,7 @@
 """Checks of a user's law: of its strength, of its constants, of its kernel before a wall moves, and of every response.
 
-A kernel that writes to a row that the law does not name would write over other memory of the process.
+A kernel that writes to a row that the law does not name would write over other memory of the process, and one that
+reads more constants than the law gives would take those of the next material, or whatever lies behind the last.
 """
 
 from collections.abc import Sequence
@@ -21,6 +22,9 @@ SPARE_ROWS = 1000
 
 UNTOUCHED = 0.7071
 """Value of the spare rows: not one that a kernel writes, nor one that stays as it is if something is added."""
+
+BEHIND = -UNTOUCHED, 1e7 * UNTOUCHED
+"""Values behind the constants of two equal trials, which differ if the kernel reads them."""
 
 JUMP = 1e-6
 """Opening and slip in a trial [m]."""
@@ -91,22 +95,38 @@ def _try_materials(name: str, kernel: Any, rows: int, read: tuple[int, ...], con
     moved = [(-JUMP, JUMP), (-JUMP, -JUMP), (JUMP, 0.0), (JUMP, JUMP), (JUMP, -JUMP)]
     jumps = np.array([(0.0, 0.0), (-JUMP, 0.0), *moved])
     for these in (jumps[:2], jumps):  # first those of a wall that is built, and bears itself
-        count = len(these) * len(constants)
-        segments = np.arange(0, count + 1, len(these)).astype(np.uint64)
-        opening, slip = np.tile(these.T, len(constants)).copy()
-        room, traction = np.full((rows + SPARE_ROWS, count), UNTOUCHED), np.full((2, count), np.nan)
-        room[:rows] = 0.0
-        raised = True
-        with suppress(Exception):
-            kernel(opening, slip, (segments, constants), room[:rows], 0.0, *traction)
-            raised = False
+        (room, traction, raised), (again, traction_again, _) = (
+            _call(kernel, these, constants, value, rows) for value in BEHIND
+        )
         if (room[rows:] != UNTOUCHED).any():
             what = f'"{name}" writes to rows of the history that it does not name: it names {rows}'
+            raise SceneError("joint.law", what)
+        equal = np.array_equal(room, again, equal_nan=True) and np.array_equal(traction, traction_again, equal_nan=True)
+        if not equal:
+            what = f'"{name}" has a kernel that reads more constants than the {constants.shape[1]} it is given'
             raise SceneError("joint.law", what)
         finite = np.isfinite(traction).all() and np.isfinite(room[list(read)]).all()
         if not raised and these is not jumps and not finite:
             what = f'"{name}" must write finite tractions and histories for points that are closed and have not slid'
             raise SceneError("joint.law", what)
+
+
+def _call(kernel: Any, jumps: Array, constants: Array, behind: float, rows: int) -> tuple[Array, Array, bool]:
+    """History with spare rows, tractions, and whether the kernel raised an error, of every jump in every material.
+
+    A value lies behind the constants.
+    """
+    count = len(jumps) * len(constants)
+    segments = np.arange(0, count + 1, len(jumps)).astype(np.uint64)
+    opening, slip = np.tile(jumps.T, len(constants)).copy()
+    given = np.full((len(constants) + SPARE_ROWS, constants.shape[1]), behind)
+    given[: len(constants)] = constants
+    room, traction = np.full((rows + SPARE_ROWS, count), UNTOUCHED), np.full((2, count), np.nan)
+    room[:rows] = 0.0
+    with suppress(Exception):
+        kernel(opening, slip, (segments, given[: len(constants)]), room[:rows], 0.0, *traction)
+        return room, traction, False
+    return room, traction, True
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import tracemalloc
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -242,6 +243,21 @@ def without_tractions(
 
 
 @kernel
+def springs_of_a_fourth(
+    opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array
+) -> None:
+    """Springs whose shear stiffness is scaled by a fourth constant."""
+    springs(opening, slip, of, history, viscosity, n, t)
+    for i in range(slip.size):
+        t[i] *= of[1][0, 3]
+
+
+def four_constants(material: JointMaterial) -> tuple[float, ...]:
+    """Those of `springs_of_a_fourth`."""
+    return *constants_of_springs(material), 0.5
+
+
+@kernel
 def with_a_mark(
     opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array
 ) -> None:
@@ -276,6 +292,15 @@ def test_copy_of_a_law_whose_kernel_writes_beyond_its_history_is_refused(changed
     """The process ended with "munmap_chunk(): invalid pointer", or with a segmentation fault."""
     with pytest.raises(SceneError, match="writes to rows of the history"):
         rigid_system(tower(law=Law(**{**vars(COULOMB), **changed})))
+
+
+@pytest.mark.parametrize("given", [{"kernel": springs_of_a_fourth}, {"constants": lambda material: (1e9, 4e8, np.inf)}])
+def test_kernel_that_reads_more_constants_than_it_is_given_is_refused(given: dict[str, Any]) -> None:
+    """It would read those of the next material, or what lies behind them in memory."""
+    rigid_system(tower(law=replace(SPRINGS, name="wrong", kernel=springs_of_a_fourth, constants=four_constants)))
+    law = replace(SPRINGS if "kernel" in given else COULOMB, name="wrong", **given)
+    with pytest.raises(SceneError, match=r'"wrong" has a kernel that reads more constants than the 3 it is given'):
+        rigid_system(tower(law=law))
 
 
 @pytest.mark.parametrize(
