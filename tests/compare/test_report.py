@@ -334,22 +334,10 @@ def test_textures_are_separated_in_the_chart_of_table_2(comparison: Comparison) 
         assert len(gaps[gaps > 1.2 * gaps.min()]) == 3
 
 
-def test_report_opens_in_a_browser_without_console_messages(page: Path) -> None:
-    """In headless Chromium every drawing is laid out, table heads take the focus and sort, and the slider works."""
+def opened(page: Path, probe: str) -> subprocess.CompletedProcess[str]:
+    """A page with a script in it, as headless Chromium shows it: its output, and messages of its console."""
     if BROWSER is None:
         pytest.skip("no Chromium on this machine")
-    probe = """<script>addEventListener("load", () => setTimeout(() => {
-        const slider = document.querySelector(".moments input");
-        const block = document.querySelector(".moving .block:last-child");
-        const at = () => block.getBoundingClientRect().x, end = at();
-        slider.value = 0; slider.dispatchEvent(new Event("input"));
-        const moved = end > at() + 1 && slider.closest(".moments").querySelector("output").value;
-        const seen = [...document.querySelectorAll("svg")].filter(one => one.getBoundingClientRect().width > 90);
-        const table = document.querySelector("table"), first = () => table.tBodies[0].rows[0].cells[0].textContent;
-        const before = first(), head = table.querySelector("th button");
-        head.focus(); head.click(); head.click();
-        document.title = `${document.activeElement === head} ${seen.length} ${before} ${first()} ${moved}`;
-        }, 2000));</script>"""
     copy = page.parent / "probed.html"
     copy.write_text(page.read_text(encoding="utf-8").replace("<body>", probe + "<body>"), encoding="utf-8")
     seen = subprocess.run(
@@ -371,6 +359,24 @@ def test_report_opens_in_a_browser_without_console_messages(page: Path) -> None:
         check=False,
     )
     assert seen.returncode == 0, seen.stderr
+    return seen
+
+
+def test_report_opens_in_a_browser_without_console_messages(page: Path) -> None:
+    """In headless Chromium every drawing is laid out, table heads take the focus and sort, and the slider works."""
+    probe = """<script>addEventListener("load", () => setTimeout(() => {
+        const slider = document.querySelector(".moments input");
+        const block = document.querySelector(".moving .block:last-child");
+        const at = () => block.getBoundingClientRect().x, end = at();
+        slider.value = 0; slider.dispatchEvent(new Event("input"));
+        const moved = end > at() + 1 && slider.closest(".moments").querySelector("output").value;
+        const seen = [...document.querySelectorAll("svg")].filter(one => one.getBoundingClientRect().width > 90);
+        const table = document.querySelector("table"), first = () => table.tBodies[0].rows[0].cells[0].textContent;
+        const before = first(), head = table.querySelector("th button");
+        head.focus(); head.click(); head.click();
+        document.title = `${document.activeElement === head} ${seen.length} ${before} ${first()} ${moved}`;
+        }, 2000));</script>"""
+    seen = opened(page, probe)
     count = len(drawings(page, "chart")) + len(drawings(page, "wall")) + 2 * len(drawings(page, "moving wall"))
     assert f"<title>true {count} panel-01 panel-12 λ = 0.0000, farthest 0 mm</title>" in seen.stdout
     assert "CONSOLE" not in seen.stderr
@@ -385,3 +391,15 @@ def test_compare_writes_a_report_of_own_scenes(tmp_path: Path, capsys: pytest.Ca
     (drawing,) = drawings(out / "report.html", "wall")
     assert f'<path id="{drawing[0].attrib["href"][1:]}"' in (out / "report.html").read_text(encoding="utf-8")
     assert (out / "mechanisms.png").is_file()
+
+
+def test_long_title_leaves_results_in_view(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The title took the whole width of the page, and the results were behind its edge."""
+    title = "northern transept of the parish church after its second restoration, " * 4
+    path, out = write_toml(content(title=title.strip(", ")), tmp_path / "church.toml"), tmp_path / "out"
+    assert command(["compare", str(path), "--models", "homog,limit", "--out", str(out), "--jobs", "1"]) == 0
+    capsys.readouterr()
+    probe = """<script>addEventListener("load", () => {
+        const fits = [...document.querySelectorAll(".wide")].map(one => one.scrollWidth <= one.clientWidth);
+        document.title = `fits ${fits.every(Boolean)}`; });</script>"""
+    assert "<title>fits true</title>" in opened(out / "report.html", probe).stdout
