@@ -18,6 +18,9 @@ from .traverse import Traverse
 LEAST_ROWS = 40
 """Smallest number of rows in any leg."""
 
+NOTHING = 1e-9
+"""Force of a drive, relative to the dead load, up to which it is rounding: nothing resists the drive."""
+
 BELOW = 0.95
 """Part of a number that two digits never round up above the number itself."""
 
@@ -39,6 +42,11 @@ class BeamDrive(Lead):
     def goals(self) -> Array:
         """Displacements along the first move [m], one after the other."""
         return self.first_move * np.array(self.scene.drive_path)
+
+    @cached_property
+    def least(self) -> float:
+        """Force [N] below which brackets need not be relatively narrow."""
+        return NOTHING * self.work_of_a_block / self.scene.overturning_size
 
     @cached_property
     def beam(self) -> int:
@@ -88,6 +96,8 @@ class BeamDrive(Lead):
 
     def doubt(self, traverse: Traverse, tolerance: float) -> str:
         """Note on a force that depends on how joints slid, or that grows on a longer path, at finite displacements."""
+        if traverse.answer <= self.least:
+            return "nothing resists the drive"
         slid = self.friction_note(traverse, tolerance, BEAM_DIFFERS, until=traverse.largest + 1)
         told = joined(self.moving(traverse, tolerance), slid)
         grown = traverse.answer + self._growth_along_slope(traverse)

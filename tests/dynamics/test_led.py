@@ -348,6 +348,18 @@ def test_fixed_height_beam_makes_pier_a_strut() -> None:
     assert "still hardens at the displacement asked for" in outcome.message
 
 
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("condition", ["free", "fixed-height"])
+def test_drive_of_a_beam_without_weight_meets_no_resistance(model: Any, condition: str) -> None:
+    """Forces of rounding differed from speed to speed, so that it was `undecided` after up to a minute."""
+    scene = block(load__live=None, beam={"height": 0.1, "condition": condition, "drive": {"displacement": [0.01, 0]}})
+    outcome = model(scene)
+    assert outcome.status == "collapse"
+    assert "nothing resists the drive" in outcome.message
+    assert outcome.upper is not None
+    assert abs(outcome.upper) < 1e-9 * np.abs(scene.mass[~scene.fixed] * 9.81).sum()
+
+
 @pytest.mark.parametrize("model", [dem_dynamic, dem_static])
 def test_message_gives_the_displacement_along_the_first_move(model: Any) -> None:
     """The answer is the reaction there, although the path goes twice as far to the other side."""
