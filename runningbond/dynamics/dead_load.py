@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from runningbond.joints.law import PLASTIC_CLOSURE, KernelLaw
+from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, settle
@@ -86,8 +86,7 @@ def fall_under_dead_load(law: KernelLaw, bears: Callable[[], bool]) -> tuple[Lit
 
 
 def _may_break(run: Run) -> bool:
-    law = run.interface.law.law
-    return law.damage is not None or PLASTIC_CLOSURE in law.history
+    return run.interface.law.law.may_break
 
 
 def _is_broken(run: Run, state: State) -> bool:

@@ -1,6 +1,6 @@
 """Joint points and the Mohr–Coulomb joint: the only place that defines its signs."""
 
-from .law import KernelLaw, Law, loses_strength, unread_keys
+from .law import KernelLaw, Law, crushes_by_law, loses_strength, unread_keys
 from .mohr_coulomb import PointStrength, point_strength
 from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
@@ -29,6 +29,7 @@ __all__ = [
     "PointStrength",
     "ResultantLaw",
     "Rule",
+    "crushes_by_law",
     "ends_note",
     "gauss",
     "impact_note",

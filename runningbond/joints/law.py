@@ -55,8 +55,8 @@ class Law:
         ``stored(points, opening, normal, tangential)``: recoverable energy of points, ``(np,)`` [J/m²]; the opening is
         measured from where they close (`PLASTIC_CLOSURE`).
     damage
-        History row of the damage, from 0 to 1; None for a law without damage. Joints of a law with damage are evaluated
-        along their length, at nine points, those of other laws at their two ends.
+        History row of the damage, from 0 to 1; None for a law without damage. Joints of a law with damage or with a
+        `PLASTIC_CLOSURE` are evaluated along their length, at nine points, those of other laws at their two ends.
     cone
         ``cone(material)``: tan φ, f_t [Pa] and shear at that tension [Pa] of the strength, for limit analysis.
     response
@@ -102,6 +102,11 @@ class Law:
         functions = (kernel, self.constants, self.stored, self.cone, self.response, self.closed, self.weakens)
         return self.name, self.history, self.damage, self.stiffest, *map(identity_of, functions)
 
+    @property
+    def may_break(self) -> bool:
+        """Whether points may be damaged or crushed, so that the distribution of forces along a joint matters."""
+        return self.damage is not None or PLASTIC_CLOSURE in self.history
+
     def loses_strength(self, constants: Array) -> bool:
         """Whether any point of materials with the constants ``(ns, n_constants)`` may lose strength."""
         return self.damage is not None if self.weakens is None else bool(np.any(self.weakens(constants)))
@@ -126,6 +131,18 @@ def loses_strength(material: JointMaterial) -> bool:
     with suppress(SceneError):
         return law.loses_strength(np.array([law.constants(material)], dtype=np.float64))
     return True
+
+
+def crushes_by_law(material: JointMaterial) -> bool:
+    """Whether a joint crushes by a law of its own, but not by its keys, which limit analysis reads."""
+    law = material.law
+    if material.compressive_strength is not None or not isinstance(law, Law):
+        return False
+    if law.cap is None:
+        return CRUSHING in law.history
+    with suppress(SceneError):
+        return bool(np.isfinite(law.constants(material)[law.cap]))
+    return True  # without stiffness it has no constants
 
 
 KERNEL_KEYS = (

@@ -55,12 +55,12 @@ def spreads(scene: Scene, *, finite: bool = False) -> bool:
     At `finite` displacements, new contacts have the default material, even if no joint of the wall has it.
     """
     materials = scene.joint_materials if finite else scene.materials_of_joints
-    return any(each.compressive_strength or each.closure or each.softens or _breaks(each.law) for each in materials)
+    return any(each.compressive_strength or each.closure or each.softens or _may_break(each.law) for each in materials)
 
 
-def _breaks(law: object) -> bool:
-    """Whether a material's own law includes damage."""
-    return isinstance(law, Law) and law.damage is not None
+def _may_break(law: object) -> bool:
+    """Whether a material's own law includes damage or crushing."""
+    return isinstance(law, Law) and law.may_break
 
 
 def impact_note(scene: Scene) -> str:

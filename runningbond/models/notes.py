@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runningbond.joints import loses_strength
+from runningbond.joints import crushes_by_law, loses_strength
 from runningbond.limit import elastic_displacement
 from runningbond.results import Outcome
 from runningbond.results.outcome import joined, two_digits
@@ -96,6 +96,12 @@ def keeps_strength(model: Model, scene: Scene) -> str:
     }
     kept = any(lost and key not in model.reads for key, lost in loses.items())
     return "joints are taken to keep the strength that they lose as they break: the wall may bear less" if kept else ""
+
+
+def does_not_crush(model: Model, scene: Scene) -> str:
+    """Note for joints that crush by a law of their own, if the model evaluates no such law; else empty."""
+    left = "joint.fracture_energy_1" not in model.reads and any(map(crushes_by_law, scene.materials_of_joints))
+    return "joints are taken not to crush, as they do by their law: the wall may bear less" if left else ""
 
 
 def left_out(model: Model, scene: Scene, finite: bool = False) -> str:

@@ -12,7 +12,7 @@ from runningbond.scene.history import FACTOR
 from .corners import left_out_corner
 from .edges import rolls
 from .model import Model
-from .notes import keeps_strength, led_far, left_out, moves, tilted_with_the_ground, without_mass
+from .notes import does_not_crush, keeps_strength, led_far, left_out, moves, tilted_with_the_ground, without_mass
 from .registry import MODELS, TOLERANCE, check_parameters, check_tolerance, find_model
 from .settings import check_observer, check_response_settings, check_settings
 
@@ -76,6 +76,7 @@ def run_model(
         "" if finite else left_out_corner(model, scene, outcome),
         rolls(scene, outcome, tolerance) if finite else "",
         keeps_strength(model, scene),
+        does_not_crush(model, scene),
         left_out(model, scene, finite),
     ]
     if outcome.multiplier is not None:

@@ -20,6 +20,7 @@ from runningbond.compare.advice.experiment import ModelError, error_of, read_err
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.advice.steps import DRAWS, Step, after_refusal, next_step
 from runningbond.joints.coulomb import COULOMB
+from runningbond.joints.interface import INTERFACE, interface_constants
 from runningbond.joints.softening import SOFTENING, softening_constants
 from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory import shipped_walls
@@ -815,6 +816,34 @@ def test_strength_that_a_law_of_the_user_loses_is_proved_by_no_model_that_keeps_
         assert "keep the strength that they lose" in run_model(name, scene.with_joint(law=law)).message
     kept = replace(law, name="tough bond", weakens=lambda found: np.zeros(len(found), dtype=bool))
     assert "keep the strength" not in run_model("limit", scene.with_joint(law=kept)).message
+
+
+def test_crushing_by_a_law_of_the_user_is_not_proved_away() -> None:
+    """A stack whose toe crushes by its law, and not by its keys: .167 was proved, and certified, for .12."""
+    joint = {"friction": 0.7, "normal_stiffness": 1e12, "shear_stiffness": 4e11}
+    scene, strength = courses([[1]] * 6, 0.5, 0.5, joint=joint), 2e5
+
+    def constants(material: JointMaterial) -> tuple[float, ...]:
+        return interface_constants(replace(material, law=None, compressive_strength=strength))
+
+    law = replace(INTERFACE, name="crushing", constants=constants)
+    own, keys = (advise(scene.with_joint(**given)) for given in ({"law": law}, {"compressive_strength": strength}))
+    assert climbed(own) == climbed(keys) == ["homog", "limit", "dem-dynamic"]
+    lower, upper = (np.array([getattr(each.outcome(), end) for each in (own, keys)]) for end in ("lower", "upper"))
+    assert lower.max() < upper.min()  # the load is found in steps of the bound, which the keys make smaller
+    assert (own.known.bound or 0.0) > 1.3 * upper.max()
+    said = "joints are taken not to crush, as they do by their law: the wall may bear less"
+    assert said in run_model("limit", scene.with_joint(law=law)).message
+    assert said not in run_model("limit", scene.with_joint(law=INTERFACE)).message
+    assert said not in run_model("dem-dynamic", scene.with_joint(law=law), 0.1).message
+
+
+def test_friction_of_a_law_of_the_user_is_friction() -> None:
+    """By the keys no joint had friction, and the associated load was called a proof."""
+    law = replace(COULOMB, name="rough", cone=lambda _: (0.6, 0.0, 0.0))
+    scene = courses([[1.0, 1.0], [0.5, 1.0, 0.5]] * 2, 0.5, 0.5, joint={"friction": 0.0})
+    assert Knowledge(scene, 0.05).frictionless
+    assert not Knowledge(scene.with_joint(law=law), 0.05).frictionless
 
 
 @pytest.mark.parametrize("outcome", [None, Outcome("", "dem-dynamic, finite", "undecided")])

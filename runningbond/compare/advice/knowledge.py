@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from runningbond.dynamics.collapse import BENDS_AT_POINTS
-from runningbond.joints import loses_strength
+from runningbond.joints import crushes_by_law, loses_strength, wall_cones
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.kinematics import sliding_dilates
@@ -68,10 +68,11 @@ class Knowledge:
         self.compliance = block_compliance(self.scene)
         self.cracks = cracks_anywhere(self.scene)
         materials = self.scene.materials_of_joints
-        self.frictionless = not any(each.friction for each in materials)
+        self.frictionless = not wall_cones(self.scene, np.arange(len(self.scene.joints)))[0].any()
         weakening = [each for each in materials if loses_strength(each)]
         self.weakens, self.bonds_break = bool(weakening), any(each.is_bonded for each in weakening)
-        self.crushes = any(each.compressive_strength is not None for each in materials)
+        self.crushes_by_law = any(map(crushes_by_law, materials))
+        self.crushes = self.crushes_by_law or any(each.compressive_strength is not None for each in materials)
         self.gives_way = any(each.compressive_fracture_energy is not None for each in materials)
         self.closes = any(each.closure is not None for each in materials)
         _refuse(self.scene)
@@ -87,7 +88,7 @@ class Knowledge:
             return
         if model.kind == "bound":
             self.bound = outcome.upper
-            weakens = self.weakens or self.gives_way or self.cracks
+            weakens = self.weakens or self.gives_way or self.crushes_by_law or self.cracks
             # The wall is in equilibrium without live load, and collapses under any live load.
             nothing = outcome.upper <= 0
             if not weakens and (nothing or self.frictionless or self._is_only_load(outcome)):
