@@ -161,6 +161,10 @@ KERNEL_KEYS = (
 """Keys of a material that a kernel knows only from its constants, and limit analysis, the first three, from a cone."""
 
 
+NEVER_REACHED = 1e12
+"""Compressive strength [Pa] that no joint reaches: it only has joints evaluated at points along them."""
+
+
 class _Watched(JointMaterial):
     """A material that notes in `seen` which of its attributes are looked at."""
 
@@ -185,7 +189,8 @@ def unread_keys(material: JointMaterial, *, static: bool) -> set[str]:
         numbers(watched)
     except Exception:  # the model that takes these numbers says what is wrong with them
         return set()
-    return set(keys) - watched.seen
+    without_effect = {"compressive_strength"} if (material.compressive_strength or 0.0) >= NEVER_REACHED else set()
+    return set(keys) - watched.seen - without_effect
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness, wall_strength
 from runningbond.joints.closure import closure_curve
+from runningbond.joints.law import NEVER_REACHED
 from runningbond.joints.wall_points import spreads
 from runningbond.limit.kinematics import (
     apart_across,
@@ -31,9 +32,6 @@ from runningbond.limit.kinematics import (
 from runningbond.results.mechanism import fastest_corner
 from runningbond.results.outcome import number
 from runningbond.scene import ANCHOR, Array, Forces, Scene
-
-NEVER_REACHED = 1e12
-"""Compressive strength [Pa] that no joint reaches: it has joints evaluated at points along them."""
 
 POINTS = 17
 """Number of points on a bed; with nine, as models have, walls rest under slightly larger loads than on springs."""

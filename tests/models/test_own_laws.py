@@ -9,6 +9,7 @@ from runningbond.joints.coulomb import COULOMB
 from runningbond.joints.interface import INTERFACE
 from runningbond.joints.softening import SOFTENING
 from runningbond.models import MODELS, run_model
+from runningbond.models.beds import along_joints
 from runningbond.scene import Scene
 from tests.walls import courses
 
@@ -32,6 +33,7 @@ def test_keys_that_the_users_law_does_not_look_at_are_told() -> None:
         assert not unread(model, plastic, dry)
     assert unread("limit", bare) - unread("limit", plastic) == {"friction", "cohesion"}
     assert unread("limit", plastic) == unread("limit", None)
+    assert not unread("dem-dynamic", plastic, along_joints(dry))
     crushing = courses([[1]] * 6, 0.5, 0.5, joint=joint | {"compressive_strength": 2e5}).with_joint(law=plastic)
     said = "; not taken into account: joint.compressive_strength"
     assert said in run_model("dem-dynamic", crushing, 0.1).message
