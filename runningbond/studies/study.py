@@ -32,8 +32,8 @@ class Edge:
 
     @property
     def error(self) -> float | None:
-        """Relative difference between measurement and theory; None without a theory."""
-        return None if self.theory is None else abs(self.measured - self.theory) / abs(self.theory)
+        """Relative difference between measurement and theory, absolute if theory is zero; None without a theory."""
+        return None if self.theory is None else abs(self.measured - self.theory) / (abs(self.theory) or 1.0)
 
     @property
     def agrees(self) -> bool | None:

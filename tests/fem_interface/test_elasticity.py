@@ -5,6 +5,8 @@ import pytest
 
 from fem_interface.joint_elements import nodal_jump
 from fem_interface.modal_wall import modal_wall
+from fem_interface.modes import ModeCount
+from fem_interface.periodic_cell import deformable_cell
 from homog import elastic_moduli
 from meshing import wall_mesh
 from runningbond.joints import lobatto
@@ -66,3 +68,19 @@ def test_added_compliance_falls_as_one_over_block_stiffness(block: tuple[float, 
     assert (extra > 0).all()
     slopes = np.diff(np.log10(extra), axis=0)
     assert slopes == pytest.approx(-1.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("modes", "cells", "ratio"),
+    [(6, 1, 1.0), ("all", 1, 1.0), (10, 1, 0.852), (10, 2, 0.997), (20, 1, 0.810), (20, 2, 0.992)],
+)
+def test_third_degree_modes_are_too_soft_between_the_nodes_of_a_joint(
+    modes: ModeCount, cells: int, ratio: float
+) -> None:
+    """Compressed cell of 240 × 120 mm: blocks and joints in series, but joints press a cubic edge at its nodes only."""
+    size = {"wall__block_width": 0.24, "wall__block_height": 0.12, "wall__length": 1.44, "wall__height": 0.72}
+    joint = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    scene = panel(**size, block__young=1e9, block__poisson=0.0, joint=joint)
+    in_series = 1 / (1 / (0.12 * 1e11) + 1 / 1e9)
+    moduli, _ = deformable_cell(scene, cells, modes)
+    assert moduli[1, 1] / in_series == pytest.approx(ratio, abs=5e-4 if ratio < 1 else 1e-9)

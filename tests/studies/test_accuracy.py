@@ -18,10 +18,10 @@ from matplotlib.text import Text
 from runningbond.commands.command_line import command
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit_nonassociated
-from runningbond.models import MODELS
+from runningbond.models import MODEL_LOOKS, MODELS
 from runningbond.results import save_outcome
-from runningbond.studies import Row, Rows
-from runningbond.studies.accuracy.charts import MARKS, pareto_front
+from runningbond.studies import Chart, Row, Rows
+from runningbond.studies.accuracy.charts import CHARTS, MARKS, TITLES, draw_growth, pareto_front
 from runningbond.studies.accuracy.measure import machine, measure
 from runningbond.studies.accuracy.parameters import PARAMETERS, VARIED, settings_of
 from runningbond.studies.accuracy.questions import ask
@@ -142,7 +142,7 @@ def test_published_multipliers_are_certified_to_their_last_digit(name: str, load
 
 @pytest.mark.parametrize("name", [name for name, wall in accuracy_walls().items() if name.startswith("cell-1e")])
 def test_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
-    """Six modes or more are exact; rigid blocks are too stiff by k_n a / E."""
+    """Six modes, ten of blocks of 240 × 60 mm, and all are exact; rigid blocks are too stiff by k_n a / E."""
     wall = accuracy_walls()[name]
     assert wall.answer is not None
     assert wall.scene.bond is not None
@@ -324,6 +324,26 @@ def test_tables_show_the_values_of_the_rows() -> None:
 def test_omitted_cases_are_reported() -> None:
     rows = changed(table(), "growth", ("square-48", "fem", ""), status=TOO_LONG, cpu_s=None)
     assert {row[0]: row[4] for row in growth_table(rows).rows}["fem"] == "left out: too long"
+
+
+@pytest.mark.parametrize("largest", [TOO_LONG, None])
+def test_chart_of_growth_says_too_long_only_of_what_was(largest: str | None) -> None:
+    """A case that ended in an error has no status."""
+    rows, figure = changed(table(), "growth", ("square-48", "fem", ""), status=largest, cpu_s=None), Figure()
+    draw_growth(figure, rows)
+    told = [text.get_text() for text in figure.legends[0].get_texts() if "more than" in text.get_text()]
+    assert told == (["fem: 1.50; more than 60 s beyond 300"] if largest else [])
+
+
+@pytest.mark.parametrize("chart", CHARTS[:2])
+def test_charts_do_not_judge_a_model_by_its_own_certificates(chart: Chart) -> None:
+    figure = Figure(figsize=chart.size)
+    chart.draw(figure, table())
+    colour = MODEL_LOOKS["limit-nonassociated"][0]
+    drawn = {
+        axes.get_title(loc="left"): any(line.get_color() == colour for line in axes.get_lines()) for axes in figure.axes
+    }
+    assert drawn == {title: "certified" not in title for title in TITLES.values()}
 
 
 def test_rigid_blocks_are_too_stiff_by_the_ratio_of_joint_and_block() -> None:

@@ -75,3 +75,4 @@ def test_range_of_damping_ends_at_the_first_wrong_verdict() -> None:
     verdicts = [(a, x, "wrong" if (a, x) in wrong else "right") for a in LOCALS for x in VISCOSITIES]
     edges = fits({MAPS: [{"α": a, "ξ": x, "verdict": verdict} for a, x, verdict in verdicts]})
     assert [edge.measured for edge in edges] == [0.35, 0.95, 0.0, 1.0, 2]
+    assert edges[-1].agrees is False

@@ -5,7 +5,8 @@ import pytest
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from runningbond.limit import limit
-from runningbond.studies.stability.material_edges import EXTREMES, SIZES, answer, in_words, similar
+from runningbond.models import MODELS
+from runningbond.studies.stability.material_edges import EXTREMES, PART, SIZES, answer, fits, in_words, similar
 
 
 @pytest.mark.parametrize("model", ["homog", "limit", "limit-nonassociated", "dem-static"])
@@ -29,6 +30,14 @@ def test_rigid_dynamic_model_is_right(what: str) -> None:
 def test_deformable_dynamic_model_is_right(what: str) -> None:
     result = answer(what, "fem")
     assert result["worth"] == "right", result
+
+
+@pytest.mark.parametrize(("worth", "agrees"), [("right", True), ("wrong", False)])
+def test_one_wrong_answer_does_not_agree_with_theory(worth: str, agrees: bool) -> None:
+    rows = [{"wall": what, "model": model, "worth": "right"} for what in EXTREMES for model in MODELS]
+    rows[0]["worth"] = worth
+    (edge,) = (edge for edge in fits({PART: rows}) if edge.what.endswith(": wrong"))
+    assert edge.agrees is agrees
 
 
 @pytest.mark.parametrize("model", [limit, dem_static, dem_dynamic])

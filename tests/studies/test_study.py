@@ -258,6 +258,12 @@ def test_edges_agree_to_the_tolerance_that_the_study_allows() -> None:
     assert rows[2][2:] == ["–", "–", "–"]
 
 
+def test_count_that_must_be_zero_agrees_only_with_zero() -> None:
+    edges = [Edge("wrong answers", 0, 0.0, 0.0), Edge("wrong answers", 2, 0.0, 0.0)]
+    assert [edge.agrees for edge in edges] == [True, False]
+    assert edges_sheet(edges).rows[0][1:] == ["0", "0", "0 %", "0 %"]
+
+
 def test_a_row_with_a_measurement_is_an_edge(tmp_path: Path) -> None:
     edges = BEAMS.edges(run_study(BEAMS, tmp_path))
     assert [edge.agrees for edge in edges] == [True, False, False, None]

@@ -13,11 +13,11 @@ from runningbond.models import MODEL_LOOKS
 from runningbond.pictures.charts import in_units, ticks
 from runningbond.pictures.labels import Label, Spot, place_labels
 from runningbond.studies import Chart, Row, Rows
-from runningbond.studies.apart import LONGEST
+from runningbond.studies.apart import LONGEST, TOO_LONG
 
 from .measure import REFERENCE
 from .parameters import VARIED
-from .tables import CHANGED, exponent, growth, stiffness
+from .tables import CHANGED, certified_itself, exponent, growth, stiffness
 from .walls import all_walls
 
 FLOOR, TOP = 1e-4, 3.0  # smallest error drawn, also for zero, and the end of the axis
@@ -44,7 +44,7 @@ def draw_errors(
 ) -> None:
     """Plot error against a cost, one axes per wall."""
     drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != "homog"]  # homog costs nothing
-    judged = [row for row in drawn if row.get("error") is not None]
+    judged = [row for row in drawn if row.get("error") is not None and not certified_itself(row)]
     named: list[tuple[Axes, list[Named]]] = []
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
@@ -156,13 +156,16 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     axes = figure.add_subplot(xscale="log", yscale="log")
     result = growth(rows)
     sizes = sorted({row["blocks"] for own in result.values() for row in own})
-    largest = max((all_walls()[row["wall"]].blocks for row in rows["growth"]), default=0)
+    longer: dict[str, int] = {}  # blocks of the largest wall on which a model took too long
+    for row in rows["growth"]:
+        if row.get("status") == TOO_LONG:
+            longer[row["model"]] = max(longer.get(row["model"], 0), all_walls()[row["wall"]].blocks)
     for model, own in result.items():
         (colour, marker), power = MODEL_LOOKS[model], exponent(own)
         columns = ("blocks", "cpu_s_min", "cpu_s", "cpu_s_max")
         blocks, least, middle, most = ([row[column] for row in own] for column in columns)
         name = model if power is None else f"{model}: {power:.2f}"
-        name += f"; more than {LONGEST} s beyond {max(blocks)}" if max(blocks) < largest else ""
+        name += f"; more than {LONGEST} s beyond {max(blocks)}" if max(blocks) < longer.get(model, 0) else ""
         axes.plot(blocks, middle, marker=marker, color=colour, ms=8, lw=2, label=name)
         axes.vlines(blocks, least, most, color=colour)
     ticks(axes, sizes)
@@ -170,8 +173,9 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     axes.grid(color="0.9", lw=0.7)
     figure.legend(fontsize=10, loc="outside lower center", ncols=2, title="processor seconds ∝ blocks to the power")
     if REFERENCE in result:
-        ratio = axes.secondary_yaxis("right", functions=in_units(result[REFERENCE][0]["cpu_s"]))
-        ratio.set_ylabel(f"times the {REFERENCE} program on {sizes[0]} blocks", color="0.35")
+        smallest = result[REFERENCE][0]
+        ratio = axes.secondary_yaxis("right", functions=in_units(smallest["cpu_s"]))
+        ratio.set_ylabel(f"times the {REFERENCE} program on {smallest['blocks']} blocks", color="0.35")
 
 
 def draw_stiffness(figure: Figure, rows: Rows) -> None:

@@ -43,6 +43,11 @@ def setting_of(row: Row) -> Setting:
     return row["model"], row["parameter"], row["setting"]
 
 
+def certified_itself(row: Row) -> bool:
+    """Whether a row's answer is known only from certificates of its own model, by which it is not judged."""
+    return row.get("known") == "certified" and row["model"] == "limit-nonassociated"
+
+
 def label(setting: Setting) -> str:
     """Name of a setting in tables and charts."""
     model, parameter, value = setting
@@ -84,7 +89,7 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Set
             of_setting.setdefault(setting_of(row), []).append(row)
     result = {}
     for setting, own in of_setting.items():
-        certified = [row for row in own if row.get("known") == "certified" and row["model"] == "limit-nonassociated"]
+        certified = [row for row in own if certified_itself(row)]
         judged = [
             row for row in own if row not in certified and row.get("error") is not None and row.get("ratio") is not None
         ]

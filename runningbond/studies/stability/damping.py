@@ -146,7 +146,7 @@ def fits(rows: Rows) -> list[Edge]:
     ends = {"smallest α": alphas[0], "largest α": alphas[1], "smallest ξ": xis[0], "largest ξ": xis[1]}
     right = [Edge(f"{end} with which every verdict is right, the other as in the suite", ends[end]) for end in ends]
     wrong = sum(row["verdict"] == "wrong" for row in rows[MAPS])
-    return [*right, Edge("wrong verdicts with local damping and the joints' viscosity", wrong)]
+    return [*right, Edge("wrong verdicts with local damping and the joints' viscosity", wrong, 0.0, 0.0)]
 
 
 def _draw(figure: Figure, rows: Rows) -> None:

@@ -180,7 +180,7 @@ def widest_gap(what: str) -> Row:
 
 
 def fits(rows: Rows) -> list[Edge]:
-    """Edges: λ is equal at every size, and the number of answers by rating."""
+    """Edges: λ is equal at every size, and the number of answers by rating, of which none may be wrong."""
     edges = []
     for model in MODELS:
         loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
@@ -190,7 +190,10 @@ def fits(rows: Rows) -> list[Edge]:
             if load is not None and usual is not None:
                 edges.append(Edge(f"λ of a wall of {size}, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
     count = Counter(row["worth"] for row in rows[PART])
-    return edges + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
+    none = {"wrong": (0.0, 0.0)}
+    for value, (_, what) in WORTH.items():
+        edges.append(Edge(f"answers of {len(rows[PART])}: {what}", count[value], *none.get(value, ())))
+    return edges
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
