@@ -1,9 +1,12 @@
 """Verdict criteria that are too tight or too loose, for walls with known load."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
@@ -19,6 +22,8 @@ from runningbond.studies.stability.verdict import (
     INTERVAL,
     PART,
     REST,
+    STUDY,
+    SWEEPS,
     WEIGHTLESS,
     WIDTH,
     believed,
@@ -94,3 +99,25 @@ def test_default_collapse_displacement_suffices_without_weight() -> None:
     certified = limit_nonassociated(published_scene(WEIGHTLESS))
     assert plateau(rows) == (U_CRIT, 2 * U_CRIT)
     assert (certified.lower or np.inf) <= rows[0]["λ"] <= (certified.upper or 0.0)
+
+
+def test_chart_shows_every_search_without_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the smallest values of a criterion; infeasible walls used to lie outside the axes."""
+    none = SimpleNamespace(lower=None, upper=None)
+    monkeypatch.setattr("runningbond.studies.stability.verdict.limit_nonassociated", lambda scene: none)
+    rows = []
+    for (wall, criterion), values in SWEEPS.items():
+        unit = 1.0 if wall == WEIGHTLESS else known_wall(wall).multiplier
+        found = {"answer": "collapse", "λ": unit, "λ / λ known": 1.0}
+        for value in values:
+            answer = {"answer": "infeasible"} if value == min(values) else found
+            rows.append({"wall": wall, "criterion": criterion, "value": value} | answer)
+    figure = Figure()
+    STUDY.charts[0].draw(figure, {PART: rows})
+    places = []
+    for axes in figure.axes:
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        marks = [text.xy for text in axes.texts if isinstance(text, Annotation) and text.get_text() == "×"]
+        assert all(left < x < right and low < y < high for x, y in marks)
+        places += [(axes.get_title(), *mark) for mark in marks]
+    assert len(set(places)) == len(places) == 6

@@ -26,6 +26,8 @@ WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS
 TENTHS, FINE = 10, 2000  # shares of the collapse load in the rows, and increments to that of a single block
 INCREMENTS = (1, 10, 100)  # load steps to the collapse load; 1 means that each tenth is applied at once
 ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as read in the paper
+ARM = "l_c / joint"
+CAPTION = f"Each tenth of the collapse load under the published algorithm, {ARM} = {ARMS[0]}"
 OUTSIDE = 1e-3  # excess of forces over Eq. 3, relative to the largest force, above which it counts as violated
 TOLERANCE = 0.02  # relative width of the bracket of collapse loads
 
@@ -114,7 +116,7 @@ def fits(rows: Rows) -> list[Edge]:
 
 def _draw(figure: Figure, rows: Rows) -> None:
     for axes, increments in zip(figure.subplots(1, len(INCREMENTS), sharey=True), INCREMENTS, strict=True):
-        own = [row for row in rows[PART] if (row["steps"], row["l_c / joint"]) == (increments, ARMS[0])]
+        own = [row for row in rows[PART] if (row["steps"], row[ARM]) == (increments, ARMS[0])]
         for place, row in enumerate(own):
             for k, fate in enumerate(row["fates"]):
                 colour, letter, _ = LOOKS[fate]
@@ -144,8 +146,8 @@ STUDY = Study(
     "curve stops at the last converged load",
     parts={
         BLOCK: Part(("block that",), [*zip(BLOCKS)], block_row),
-        PART: Part(("wall", "l_c / joint", "steps"), [*product(WALLS, ARMS, INCREMENTS)], measure),
+        PART: Part(("wall", ARM, "steps"), [*product(WALLS, ARMS, INCREMENTS)], measure),
     },
-    charts=[Chart("What became of each tenth of the collapse load under the published algorithm", _draw, size=(9, 5))],
+    charts=[Chart(CAPTION, _draw, size=(9, 5))],
     fits=fits,
 )

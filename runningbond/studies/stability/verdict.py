@@ -105,24 +105,24 @@ def fits(rows: Rows) -> list[Edge]:
 def _draw(figure: Figure, rows: Rows) -> None:
     left, right = figure.subplots(1, 2)
     many: Array = np.geomspace(1e-5, 0.3, 60)
-    for name, (colour, marker) in looks_of(WALLS).items():
-        _draw_sweep(left, sweep(rows, name, REST), name, colour, marker, 0.93)
+    for place, (name, (colour, marker)) in enumerate(looks_of(WALLS).items()):
+        _draw_sweep(left, sweep(rows, name, REST), name, colour, marker, 0.91 + 0.02 * place)
         theory = [believed(name, rest) / known_wall(name).multiplier for rest in many]
         left.plot(many, theory, color=colour, lw=1)
     left.set(xscale="log", xlabel="threshold of rest [force units]", ylabel=SCALED, xlim=(2e-17, 1), ylim=(0.9, 1.5))
     left.annotate("?  undecided", (1e-12, 0.945), color="0.4", fontsize=8)
     left.set_title("at rest; lines: λ taken for standing, by theory", fontsize=10)
     looks = dict(zip((W1, W2, WEIGHTLESS), LOOKS[1:4], strict=True))
-    for name, (colour, marker) in looks.items():
+    for place, (name, (colour, marker)) in enumerate(looks.items()):
         label = f"{name}, no weight" if name == WEIGHTLESS else name
-        _draw_sweep(right, sweep(rows, name, FAR), label, colour, marker, 0.75, joined=True)
+        _draw_sweep(right, sweep(rows, name, FAR), label, colour, marker, 0.73 + 0.02 * place, joined=True)
     certified, unit = limit_nonassociated(published_scene(WEIGHTLESS)), _unit(sweep(rows, WEIGHTLESS, FAR))
     if certified.lower is not None and certified.upper is not None:
         low, high, colour = certified.lower / unit, certified.upper / unit, looks[WEIGHTLESS][0]
         right.errorbar(5, low, [[0], [high - low]], color=colour, lw=1.5, capsize=3)
         right.annotate(f"certified for\n{WEIGHTLESS}", (7, high + 0.005), ha="right", color=colour, fontsize=8)
     right.annotate("×  infeasible\n?  undecided", (2e-6, 0.77), color="0.4", fontsize=8)
-    right.set(xscale="log", xlim=(4e-9, 8), ylim=(0.6, 1.1), xlabel="displacement of a collapse [block sizes]")
+    right.set(xscale="log", xlim=(3e-10, 8), ylim=(0.6, 1.1), xlabel="displacement of a collapse [block sizes]")
     right.set_ylabel("λ / λ known (without weight: / the suite's)")
     right.set_title("fallen", fontsize=10)
     for axes in (left, right):
