@@ -123,8 +123,8 @@ STUDY = Study(
     "Joint stiffness",
     trusted="overlaps at rest are far below the displacement that counts as collapse, and the budget of time steps "
     "suffices; there neither λ nor the conditioning of the static equations depends on the stiffness",
-    beyond="softer: a message that joints are too soft; stiffer: `undecided`, because the budget runs out, with the "
-    "time for which each load was followed",
+    beyond="softer: a message that joints are too soft; stiffer than any here: `undecided`, because the budget runs "
+    "out, with the time for which each load was followed",
     parts={REST: Part((K_N,), [*zip(NORMAL)], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
     charts=[Chart("λ, overlap under the dead load and time steps of joints from soft to stiff", _draw, size=(11, 4.6))],
     fits=fits,
