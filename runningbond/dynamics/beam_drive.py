@@ -43,10 +43,10 @@ class BeamDrive(Lead):
         """Displacements along the first move [m], one after the other."""
         return self.first_move * np.array(self.scene.drive_path)
 
-    @cached_property
+    @property
     def least(self) -> float:
         """Force [N] below which brackets need not be relatively narrow."""
-        return NOTHING * self.work_of_a_block / self.scene.overturning_size
+        return NOTHING * self.dead_load
 
     @cached_property
     def beam(self) -> int:

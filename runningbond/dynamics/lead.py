@@ -272,11 +272,16 @@ class Lead(ABC):
         return system.kinetic_energy(state.velocity) > FALL_KINETIC * (1 - run.local) * given
 
     @cached_property
-    def work_of_a_block(self) -> float:
-        """Work of the dead load [J] if everything that moves comes down by the size across which blocks overturn."""
+    def dead_load(self) -> float:
+        """Sum of the dead load's forces [N] on everything that moves."""
         system = self.run.system
         load = np.where(np.isfinite(system.mass), system.dead, 0.0)[system.rigid[:, :2]]
-        return float(np.hypot(*load.T).sum() * self.scene.overturning_size)
+        return float(np.hypot(*load.T).sum())
+
+    @cached_property
+    def work_of_a_block(self) -> float:
+        """Work of the dead load [J] if everything that moves comes down by the size across which blocks overturn."""
+        return self.dead_load * self.scene.overturning_size
 
 
 def pace(rows: int, windows: int = 1) -> Array:

@@ -111,7 +111,8 @@ class Advice:
             message += f"; {last.model}: {last.next.reason}" if last.outcome is not None or not finite or leans else ""
         model = MODELS.get(answer.model.split(",")[0])
         ignored = model.unread_by_law(known.scene) if model is not None and known.answer is not None else []
-        message += f"; not taken into account: {', '.join(ignored)}" if ignored else ""
+        left_out = f"not taken into account: {', '.join(ignored)}"
+        message += f"; {left_out}" if ignored and left_out not in message else ""  # a finite run has told it
         return replace(answer, seconds=known.seconds, message=message)
 
     @property
